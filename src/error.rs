@@ -1,0 +1,153 @@
+//! What went wrong, where, and what was done about it.
+//!
+//! An [`Error`] ends a command; a [`Warning`] tells of a substitute and the work goes on. Both name
+//! a [`Place`]: the file and the node, prim or object in it.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Result with the crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Where in the input something stands: a file, and a node or prim path in it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// The file; empty for scenes that come from memory.
+    pub file: Option<Arc<Path>>,
+    /// Path of the node, prim or object inside the file; empty for the file as a whole.
+    pub node: Option<Arc<str>>,
+}
+
+impl Place {
+    /// A whole file.
+    pub fn file(path: impl Into<PathBuf>) -> Self {
+        Self { file: Some(path.into().into()), node: None }
+    }
+
+    /// A node of the same file.
+    pub fn at(&self, node: impl AsRef<str>) -> Self {
+        Self { file: self.file.clone(), node: Some(node.as_ref().into()) }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.file, &self.node) {
+            (Some(file), Some(node)) => write!(f, "{}, {node}", file.display()),
+            (Some(file), None) => write!(f, "{}", file.display()),
+            (None, Some(node)) => write!(f, "{node}"),
+            (None, None) => write!(f, "scene"),
+        }
+    }
+}
+
+/// Why a command could not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The input is well formed but asks for something that this build does not do.
+    #[error("{place}: {what}")]
+    Unsupported {
+        /// Where.
+        place: Place,
+        /// What is not supported, and what would help.
+        what: String,
+    },
+    /// The input is broken.
+    #[error("{place}: {what}")]
+    Invalid {
+        /// Where.
+        place: Place,
+        /// What is wrong.
+        what: String,
+    },
+    /// The operating system refused to read or write.
+    #[error("{place}: {what}")]
+    Io {
+        /// Which file.
+        place: Place,
+        /// What was attempted, as "can't read", "can't write".
+        what: String,
+        /// The system's answer.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The user or the host stopped it.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Error {
+    /// Broken input at `place`.
+    pub fn invalid(place: &Place, what: impl Into<String>) -> Self {
+        Self::Invalid { place: place.clone(), what: what.into() }
+    }
+
+    /// Input at `place` that this build does not support.
+    pub fn unsupported(place: &Place, what: impl Into<String>) -> Self {
+        Self::Unsupported { place: place.clone(), what: what.into() }
+    }
+
+    /// A file that could not be read or written.
+    pub fn io(path: &Path, what: impl Into<String>, source: std::io::Error) -> Self {
+        Self::Io { place: Place::file(path), what: what.into(), source }
+    }
+}
+
+/// Something in the input that was replaced or left out; the render goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Where.
+    pub place: Place,
+    /// What was wrong and what was done about it.
+    pub what: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.what)
+    }
+}
+
+/// The warnings of one import or render, each at most once.
+#[derive(Clone, Debug, Default)]
+pub struct Warnings {
+    list: Vec<Warning>,
+}
+
+impl Warnings {
+    /// No warnings.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a warning unless the same one is there already.
+    pub fn push(&mut self, place: &Place, what: impl Into<String>) {
+        let warning = Warning { place: place.clone(), what: what.into() };
+        if !self.list.contains(&warning) {
+            self.list.push(warning);
+        }
+    }
+
+    /// Adds those of `other`.
+    pub fn extend(&mut self, other: Self) {
+        for warning in other.list {
+            self.push(&warning.place, warning.what);
+        }
+    }
+
+    /// All, in the order in which they came.
+    pub fn iter(&self) -> impl Iterator<Item = &Warning> {
+        self.list.iter()
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// True where there is none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+}

@@ -1,0 +1,4 @@
+//! Penumbra: a production render engine for shadows, ambient occlusion and honest noise figures.
+
+pub mod error;
+pub mod math;

@@ -1,0 +1,83 @@
+//! Orthonormal frames.
+//!
+//! Tom Duff, James Burgess, Per Christensen, Christophe Hery, Andrew Kensler, Max Liani, Ryusuke
+//! Villemin: *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
+
+use super::Vec3;
+
+/// A right-handed orthonormal frame; local z is `n`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Tangent, local x.
+    pub s: Vec3,
+    /// Bitangent, local y.
+    pub t: Vec3,
+    /// Normal, local z.
+    pub n: Vec3,
+}
+
+impl Frame {
+    /// A frame around the unit vector `n`, continuous but at `n.z = 0` crossing sign.
+    pub fn from_z(n: Vec3) -> Self {
+        let sign = 1.0_f32.copysign(n.z);
+        let a = -1.0 / (sign + n.z);
+        let b = n.x * n.y * a;
+        Self {
+            s: Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+            t: Vec3::new(b, sign + n.y * n.y * a, -n.y),
+            n,
+        }
+    }
+
+    /// A frame around the unit vector `n` whose x axis lies in the plane of `n` and `tangent`;
+    /// as [`Frame::from_z`] where the tangent is null, not finite or parallel to `n`.
+    pub fn from_z_and_tangent(n: Vec3, tangent: Vec3) -> Self {
+        let s = tangent - n * n.dot(tangent);
+        let length_squared = s.length_squared();
+        if length_squared.is_finite() && length_squared > 1e-12 * tangent.length_squared() {
+            let s = s / length_squared.sqrt();
+            Self { s, t: n.cross(s), n }
+        } else {
+            Self::from_z(n)
+        }
+    }
+
+    /// World to local.
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
+    }
+
+    /// Local to world.
+    pub fn to_world(&self, v: Vec3) -> Vec3 {
+        self.s * v.x + self.t * v.y + self.n * v.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_orthonormal_and_right_handed_everywhere() {
+        for i in 0..1000 {
+            let z = 1.0 - 2.0 * (i as f32 + 0.5) / 1000.0;
+            let r = (1.0 - z * z).sqrt();
+            let phi = 2.399_963 * i as f32;
+            let n = Vec3::new(r * phi.cos(), r * phi.sin(), z).normalize();
+            for f in [Frame::from_z(n), Frame::from_z_and_tangent(n, Vec3::new(0.3, -0.2, 0.9))] {
+                assert!((f.s.cross(f.t) - f.n).length() < 1e-5);
+                assert!((f.s.length() - 1.0).abs() < 1e-5 && f.s.dot(f.n).abs() < 1e-5);
+                let v = Vec3::new(0.1, -0.7, 0.4);
+                assert!((f.to_world(f.to_local(v)) - v).length() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn a_useless_tangent_falls_back() {
+        let n = Vec3::Z;
+        for t in [Vec3::ZERO, Vec3::Z, Vec3::NAN] {
+            assert_eq!(Frame::from_z_and_tangent(n, t), Frame::from_z(n));
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! The leaf that every room stands on: vectors, frames, rays, boxes and colour.
+//!
+//! Vectors are `glam`'s. Traced data is `f32` ([`Vec3`]); authored transforms are `f64`
+//! ([`DAffine3`]) until `scene/prepare.rs` moves them to render space.
+
+mod bounds;
+mod frame;
+mod ray;
+mod rgb;
+mod scalar;
+
+pub use bounds::Bounds;
+pub use frame::Frame;
+pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+pub use ray::{Ray, offset_ray_origin};
+pub use rgb::Rgb;
+pub use scalar::{ONE_MINUS_EPSILON, gamma, safe_acos, safe_sqrt, sqr};
