@@ -1,4 +1,6 @@
 //! Penumbra: a production render engine for shadows, ambient occlusion and honest noise figures.
 
+pub mod desc;
 pub mod error;
+pub mod import;
 pub mod math;

@@ -1,0 +1,43 @@
+//! Cameras as authored.
+
+use std::sync::Arc;
+
+use crate::error::Place;
+use crate::math::DAffine3;
+
+/// A camera that looks along its local −z, with +y up and +x to the right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraDesc {
+    /// Name, for `--camera`.
+    pub name: Arc<str>,
+    /// Where it stands in the file; the node path is accepted by `--camera` too.
+    pub place: Place,
+    /// Camera to world; its scale is ignored.
+    pub transform: DAffine3,
+    /// How it projects.
+    pub projection: ProjectionDesc,
+    /// Nothing nearer than this along the axis is seen, in metres.
+    pub clip_near: f64,
+    /// Nothing farther than this along the axis is seen; may be infinite.
+    pub clip_far: f64,
+}
+
+/// How a camera projects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProjectionDesc {
+    /// Straight lines through one point.
+    Perspective {
+        /// Full vertical field of view in radians, at the authored aspect.
+        fov_y: f64,
+        /// Width over height that the author framed for; `None` for that of the picture. A picture
+        /// of another aspect shows at least this frame.
+        aspect: Option<f64>,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Half of the width that is seen, in metres.
+        half_width: f64,
+        /// Half of the height that is seen, in metres.
+        half_height: f64,
+    },
+}

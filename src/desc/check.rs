@@ -1,0 +1,60 @@
+//! Holds a [`SceneDesc`] to its own rules, so that what follows need not.
+
+use super::SceneDesc;
+use crate::error::{Error, Place, Result};
+
+/// Checks every index and length of `scene`.
+///
+/// # Errors
+/// [`Error::Invalid`] with the place of the first mesh, instance, texture or material that breaks
+/// a rule. A door that lets that happen has a bug: bad files are mended, with a warning, at the door.
+pub fn check(scene: &SceneDesc) -> Result<()> {
+    for mesh in &scene.meshes {
+        let points = mesh.points.len();
+        let corners = 3 * mesh.triangles.len();
+        let rule = |ok: bool, what: &str| if ok { Ok(()) } else { Err(Error::invalid(&mesh.place, what)) };
+        rule(mesh.triangles.iter().flatten().all(|&i| (i as usize) < points), "a triangle names a point out of range")?;
+        rule(mesh.normals.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of normals")?;
+        rule(mesh.uvs.iter().all(|a| attribute_fits(a, points, corners)), "wrong count of UVs")?;
+        rule(mesh.tangents.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of tangents")?;
+        rule(mesh.colors.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of colors")?;
+        rule(mesh.material_slots.as_ref().is_none_or(|s| s.len() == mesh.triangles.len()), "wrong count of slots")?;
+    }
+    for instance in &scene.instances {
+        index(instance.mesh, scene.meshes.len(), &instance.place, "mesh")?;
+        for &material in instance.materials.iter().flatten() {
+            index(material, scene.materials.len(), &instance.place, "material")?;
+        }
+    }
+    for texture in &scene.textures {
+        index(texture.image, scene.images.len(), &texture.place, "image")?;
+    }
+    for material in &scene.materials {
+        for texture in material.textures() {
+            index(texture.texture, scene.textures.len(), &material.place, "texture")?;
+        }
+    }
+    for image in &scene.images {
+        let texels = image.width as usize * image.height as usize;
+        if texels == 0 || image.pixels.len() != texels * usize::from(image.channels) {
+            return Err(Error::invalid(&image.place, "image size and texel count differ"));
+        }
+    }
+    if let Some(world) = &scene.world
+        && let Some(image) = world.image
+    {
+        index(image.image, scene.images.len(), &world.place, "image")?;
+    }
+    Ok(())
+}
+
+fn attribute_fits<T>(attribute: &super::Attribute<T>, points: usize, corners: usize) -> bool {
+    match attribute {
+        super::Attribute::Point(values) => values.len() == points,
+        super::Attribute::Corner(values) => values.len() == corners,
+    }
+}
+
+fn index(i: u32, len: usize, place: &Place, kind: &str) -> Result<()> {
+    if (i as usize) < len { Ok(()) } else { Err(Error::invalid(place, format!("{kind} {i} of {len} does not exist"))) }
+}

@@ -1,0 +1,94 @@
+//! Triangle meshes and their placement, as authored.
+
+use std::sync::Arc;
+
+use crate::error::Place;
+use crate::math::DAffine3;
+
+/// Values on a mesh: one per point, or one per corner of each triangle (3 × triangles).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attribute<T> {
+    /// One value for each point.
+    Point(Vec<T>),
+    /// One value for each corner of each triangle.
+    Corner(Vec<T>),
+}
+
+impl<T> Attribute<T> {
+    /// How many values there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Point(values) | Self::Corner(values) => values.len(),
+        }
+    }
+
+    /// True where there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A triangle mesh in object space. Front faces wind counter-clockwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshDesc {
+    /// Name.
+    pub name: Arc<str>,
+    /// Where it stands in the file.
+    pub place: Place,
+    /// Points, in metres before the instance's transform.
+    pub points: Vec<[f32; 3]>,
+    /// Three point indices for each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Shading normals, unit; `None` for a faceted mesh.
+    pub normals: Option<Attribute<[f32; 3]>>,
+    /// UV sets; v grows downwards in the image as in glTF (the image's top row is v = 0).
+    pub uvs: Vec<Attribute<[f32; 2]>>,
+    /// Tangents (MikkTSpace), w is the sign of the bitangent; only where a material needs them.
+    pub tangents: Option<Attribute<[f32; 4]>>,
+    /// Vertex colours, linear, straight alpha; multiplied onto the base colour.
+    pub colors: Option<Attribute<[f32; 4]>>,
+    /// Index into the instance's material list for each triangle; `None` for 0 everywhere.
+    pub material_slots: Option<Vec<u16>>,
+}
+
+/// A mesh placed in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstanceDesc {
+    /// Name of the object, for Cryptomatte.
+    pub name: Arc<str>,
+    /// Where it stands in the file.
+    pub place: Place,
+    /// Name of the asset (topmost parent) that it belongs to, for Cryptomatte.
+    pub asset: Arc<str>,
+    /// Index into `SceneDesc::meshes`.
+    pub mesh: u32,
+    /// Object to world.
+    pub transform: DAffine3,
+    /// Index into `SceneDesc::materials` for each slot; a slot without entry, or with `None`, has
+    /// the default material.
+    pub materials: Vec<Option<u32>>,
+    /// Value of the object index pass.
+    pub object_index: u32,
+    /// Which rays see it.
+    pub visibility: Visibility,
+}
+
+/// Which kinds of ray see an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Visibility {
+    /// Rays from the camera.
+    pub camera: bool,
+    /// Diffuse bounces.
+    pub diffuse: bool,
+    /// Reflections.
+    pub glossy: bool,
+    /// Refractions.
+    pub transmission: bool,
+    /// Shadow and occlusion rays.
+    pub shadow: bool,
+}
+
+impl Visibility {
+    /// Seen by every ray.
+    pub const ALL: Self = Self { camera: true, diffuse: true, glossy: true, transmission: true, shadow: true };
+}

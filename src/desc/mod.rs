@@ -1,0 +1,52 @@
+//! What an artist wrote: plain data, `f64` where it is authored so, and no behaviour.
+//!
+//! Every front door (glTF, USD, Blender) fills a [`SceneDesc`] and nothing else; `scene/prepare.rs`
+//! turns it into what is traced. The world is right-handed with **y up**, in metres, radiance in
+//! W·sr⁻¹·m⁻² and linear Rec.709. Indices point into the vectors of the same `SceneDesc`;
+//! [`check`] holds them to that.
+
+mod camera;
+mod check;
+mod image;
+mod light;
+mod material;
+mod mesh;
+mod texture;
+
+pub use camera::{CameraDesc, ProjectionDesc};
+pub use check::check;
+pub use image::{ColorSpace, ImageDesc, PixelData};
+pub use light::{LightDesc, LightKind, WorldDesc, WorldImage};
+pub use material::{
+    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
+    SheenDesc, VolumeDesc,
+};
+pub use mesh::{Attribute, InstanceDesc, MeshDesc, Visibility};
+pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
+
+use crate::error::Place;
+
+/// A scene as authored, at one frame.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDesc {
+    /// Where it came from.
+    pub place: Place,
+    /// Cameras, in the order of the file. The door has already chosen none of them.
+    pub cameras: Vec<CameraDesc>,
+    /// Meshes; shared by any number of instances.
+    pub meshes: Vec<MeshDesc>,
+    /// Meshes placed in the world.
+    pub instances: Vec<InstanceDesc>,
+    /// Materials.
+    pub materials: Vec<MaterialDesc>,
+    /// Ways to look an image up.
+    pub textures: Vec<TextureDesc>,
+    /// Decoded images; shared by any number of textures.
+    pub images: Vec<ImageDesc>,
+    /// Lights that are not emissive meshes.
+    pub lights: Vec<LightDesc>,
+    /// What surrounds everything; `None` where the file says nothing.
+    pub world: Option<WorldDesc>,
+    /// Names of the material variants that the file offers.
+    pub variants: Vec<String>,
+}

@@ -1,0 +1,1 @@
+//! Files in: each door fills a `SceneDesc` and `Warnings`, nothing else.
