@@ -1,1 +1,2 @@
+//! Rays per second against Embree.
 fn main() {}
