@@ -4,3 +4,4 @@ pub mod desc;
 pub mod error;
 pub mod import;
 pub mod math;
+pub mod sampling;
