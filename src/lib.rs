@@ -5,3 +5,4 @@ pub mod desc;
 pub mod error;
 pub mod import;
 pub mod math;
+pub mod sampling;
