@@ -2,5 +2,6 @@
 
 pub mod desc;
 pub mod error;
+pub mod film;
 pub mod import;
 pub mod math;
