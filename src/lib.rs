@@ -4,6 +4,7 @@ pub mod bvh;
 pub mod camera;
 pub mod desc;
 pub mod error;
+pub mod film;
 pub mod import;
 pub mod light;
 pub mod math;

@@ -1,0 +1,22 @@
+//! What a render gathers: passes, filters, and the sums behind every pixel.
+//!
+//! [`PASSES`] says what a picture can hold and what each pass is made of; a [`PassSet`] chooses; a
+//! [`Film`] adds up exactly the quantities the choice needs, in tiles that threads own one at a time,
+//! and [`Film::develop`] turns them into a [`Picture`] at any moment.
+
+pub mod cryptomatte;
+mod filter;
+mod pass;
+mod picture;
+mod quantity;
+mod sample;
+mod store;
+mod tile;
+
+pub use filter::{FILTERS, Filter, FilterRow};
+pub use pass::{Means, PASSES, Pass, PassSet, Storage};
+pub use picture::{Layer, Picture};
+pub use quantity::{Quantities, Quantity};
+pub use sample::{CryptoSample, FirstHit, PixelSample, Split};
+pub use store::Film;
+pub use tile::{NonFinite, SampleId, Tile};

@@ -1,0 +1,154 @@
+//! The quantities a film can accumulate: what passes are developed from.
+//!
+//! A pass is not a sum but a function of sums (a ratio of two, say), so film and passes are kept apart:
+//! the film adds up the quantities that the chosen passes name, each once, and nothing else.
+
+use super::sample::PixelSample;
+use crate::math::{Rgb, Vec3};
+
+/// One vector-valued sum over the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+#[allow(missing_docs)] // Each is the field of `PixelSample` of its name.
+pub enum Quantity {
+    Combined,
+    DiffuseDirect,
+    DiffuseIndirect,
+    DiffuseColor,
+    GlossyDirect,
+    GlossyIndirect,
+    GlossyColor,
+    TransmissionDirect,
+    TransmissionIndirect,
+    TransmissionColor,
+    Emission,
+    Environment,
+    Ao,
+    Unshadowed,
+    IrradianceShadowed,
+    IrradianceUnshadowed,
+    Normal,
+    Uv,
+    DenoisingNormal,
+    DenoisingAlbedo,
+    DenoisingDepth,
+    /// [`CryptoSample::object`](super::CryptoSample::object), kept as a list of ids.
+    CryptoObject,
+    /// [`CryptoSample::material`](super::CryptoSample::material), kept as a list of ids.
+    CryptoMaterial,
+    /// [`CryptoSample::asset`](super::CryptoSample::asset), kept as a list of ids.
+    CryptoAsset,
+    /// The [`FirstHit`](super::FirstHit), overwritten, never added.
+    FirstHit,
+}
+
+impl Quantity {
+    /// All of them, in the order of the film's memory.
+    pub const ALL: [Self; 25] = [
+        Self::Combined,
+        Self::DiffuseDirect,
+        Self::DiffuseIndirect,
+        Self::DiffuseColor,
+        Self::GlossyDirect,
+        Self::GlossyIndirect,
+        Self::GlossyColor,
+        Self::TransmissionDirect,
+        Self::TransmissionIndirect,
+        Self::TransmissionColor,
+        Self::Emission,
+        Self::Environment,
+        Self::Ao,
+        Self::Unshadowed,
+        Self::IrradianceShadowed,
+        Self::IrradianceUnshadowed,
+        Self::Normal,
+        Self::Uv,
+        Self::DenoisingNormal,
+        Self::DenoisingAlbedo,
+        Self::DenoisingDepth,
+        Self::CryptoObject,
+        Self::CryptoMaterial,
+        Self::CryptoAsset,
+        Self::FirstHit,
+    ];
+
+    /// How many numbers the film adds up for it; 0 for those that are kept in another way.
+    pub const fn width(self) -> usize {
+        match self {
+            Self::Combined => 4,
+            Self::DenoisingDepth => 1,
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => 0,
+            _ => 3,
+        }
+    }
+
+    /// The first `width` numbers are the sample's values.
+    pub(super) fn read(self, s: &PixelSample) -> [f32; 4] {
+        match self {
+            Self::Combined => [s.combined.r, s.combined.g, s.combined.b, s.alpha],
+            Self::DiffuseDirect => color(s.direct.diffuse),
+            Self::DiffuseIndirect => color(s.indirect.diffuse),
+            Self::DiffuseColor => color(s.color.diffuse),
+            Self::GlossyDirect => color(s.direct.glossy),
+            Self::GlossyIndirect => color(s.indirect.glossy),
+            Self::GlossyColor => color(s.color.glossy),
+            Self::TransmissionDirect => color(s.direct.transmission),
+            Self::TransmissionIndirect => color(s.indirect.transmission),
+            Self::TransmissionColor => color(s.color.transmission),
+            Self::Emission => color(s.emission),
+            Self::Environment => color(s.environment),
+            Self::Ao => color(s.ao),
+            Self::Unshadowed => color(s.unshadowed),
+            Self::IrradianceShadowed => color(s.irradiance_shadowed),
+            Self::IrradianceUnshadowed => color(s.irradiance_unshadowed),
+            Self::Normal => vector(s.normal),
+            Self::Uv => [s.uv[0], s.uv[1], s.uv[2], 0.0],
+            Self::DenoisingNormal => vector(s.denoising_normal),
+            Self::DenoisingAlbedo => color(s.denoising_albedo),
+            Self::DenoisingDepth => [s.denoising_depth, 0.0, 0.0, 0.0],
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => [0.0; 4],
+        }
+    }
+}
+
+fn color(c: Rgb) -> [f32; 4] {
+    [c.r, c.g, c.b, 0.0]
+}
+
+fn vector(v: Vec3) -> [f32; 4] {
+    [v.x, v.y, v.z, 0.0]
+}
+
+/// A set of quantities.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Quantities(u32);
+
+impl Quantities {
+    /// With `q` in it.
+    pub const fn with(self, q: Quantity) -> Self {
+        Self(self.0 | 1 << q as u32)
+    }
+
+    /// True where `q` is in it.
+    pub const fn contains(self, q: Quantity) -> bool {
+        self.0 & (1 << q as u32) != 0
+    }
+
+    /// Its members, in the order of [`Quantity::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(move |&q| self.contains(q))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_lists_every_quantity_once_at_its_own_index() {
+        for (i, q) in Quantity::ALL.into_iter().enumerate() {
+            assert_eq!(q as usize, i);
+        }
+        assert_eq!(Quantity::ALL.len(), Quantity::FirstHit as usize + 1);
+    }
+}

@@ -1,0 +1,92 @@
+//! What one camera path brings back to the film, and what one extra ray through the pixel's centre does.
+
+use crate::math::{Rgb, Vec3};
+
+/// A quantity split by the lobe that the path took at its first surface, as Cycles' light passes are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Split {
+    /// Diffuse reflection (sheen and subsurface count here).
+    pub diffuse: Rgb,
+    /// Glossy and mirror reflection.
+    pub glossy: Rgb,
+    /// Transmission through the surface, refracted.
+    pub transmission: Rgb,
+}
+
+/// Cryptomatte identifiers of what a camera path saw, each a hash as float bits; see
+/// [`id_from_name`](super::cryptomatte::id_from_name). An id of 0 is nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CryptoSample {
+    /// Of the object (instance) name.
+    pub object: f32,
+    /// Of the material name.
+    pub material: f32,
+    /// Of the name of the asset: the topmost parent.
+    pub asset: f32,
+    /// How much of the sample it covers, 0 (background) to 1 (opaque).
+    pub coverage: f32,
+}
+
+/// What one camera path gives. Radiances are scene-linear Rec.709 and carry everything up to the eye;
+/// fields whose pass is not asked for stay 0 and are not read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelSample {
+    /// Radiance towards the camera, premultiplied by `alpha`.
+    pub combined: Rgb,
+    /// 1 where a surface was met, 0 where the background shows through.
+    pub alpha: f32,
+    /// Light that met one surface between emitter and camera; contribution, color included.
+    pub direct: Split,
+    /// Light that met more than one; contribution, color included.
+    pub indirect: Split,
+    /// Albedo of each lobe class at the first surface, times coverage.
+    pub color: Split,
+    /// Emission of surfaces and lights seen by the camera.
+    pub emission: Rgb,
+    /// Radiance of the world seen by the camera.
+    pub environment: Rgb,
+    /// Cosine-weighted openness at the first surface times coverage; 0 for the background.
+    pub ao: Rgb,
+    /// `direct.diffuse` as it would be with nothing in the way of the light, color included.
+    pub unshadowed: Rgb,
+    /// Direct irradiance over π without the albedo, shadowed; for surfaces that have no diffuse albedo.
+    pub irradiance_shadowed: Rgb,
+    /// The same with nothing in the way.
+    pub irradiance_unshadowed: Rgb,
+    /// Shading normal of the first surface in world space towards the viewer, times coverage; 0 for the background.
+    pub normal: Vec3,
+    /// Texture coordinates times coverage; the third is the coverage where the surface has UVs, else 0.
+    pub uv: [f32; 3],
+    /// Normal for a denoiser, in camera space.
+    pub denoising_normal: Vec3,
+    /// Albedo for a denoiser; for emitters their emission.
+    pub denoising_albedo: Rgb,
+    /// Depth for a denoiser.
+    pub denoising_depth: f32,
+    /// What was seen, by name.
+    pub crypto: CryptoSample,
+}
+
+/// What the ray through the pixel's centre meets first: passes that must not be averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Distance along the camera's axis, in scene units.
+    pub depth: f32,
+    /// Point in world space.
+    pub position: Vec3,
+    /// Pass index of the object.
+    pub object_index: f32,
+    /// Pass index of the material.
+    pub material_index: f32,
+}
+
+impl FirstHit {
+    /// Nothing met: Cycles' background values.
+    pub const BACKGROUND: Self = Self { depth: 1e10, position: Vec3::ZERO, object_index: 0.0, material_index: 0.0 };
+}
+
+impl Default for FirstHit {
+    fn default() -> Self {
+        Self::BACKGROUND
+    }
+}

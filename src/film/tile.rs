@@ -1,0 +1,215 @@
+//! A square of pixels and the sums behind them, owned by one thread at a time.
+
+use std::array;
+
+use super::cryptomatte::{CryptoKind, Matte};
+use super::pass::PassSet;
+use super::quantity::{Quantities, Quantity};
+use super::sample::{FirstHit, PixelSample};
+
+/// Names one sample of one pixel, so that it can be replayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// Column.
+    pub x: u32,
+    /// Row from the top.
+    pub y: u32,
+    /// Which sample of the pixel.
+    pub index: u32,
+}
+
+/// Samples that were dropped since some value was NaN or infinite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NonFinite {
+    /// How many.
+    pub count: u64,
+    /// The one of lowest index, then row, then column, whatever the order of the threads.
+    pub first: Option<SampleId>,
+}
+
+impl NonFinite {
+    fn note(&mut self, id: SampleId) {
+        let key = |id: SampleId| (id.index, id.y, id.x);
+        self.count += 1;
+        if self.first.is_none_or(|first| key(id) < key(first)) {
+            self.first = Some(id);
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: Self) {
+        if let Some(id) = other.first {
+            self.note(id);
+            self.count += other.count - 1;
+        }
+    }
+}
+
+/// Where each quantity lies among the numbers of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub(super) quantities: Quantities,
+    /// First number of each quantity.
+    pub(super) offsets: [u8; Quantity::ALL.len()],
+    /// Numbers per pixel.
+    pub(super) stride: usize,
+}
+
+/// Numbers per pixel where everything is asked for.
+const MAX_STRIDE: usize = {
+    let (mut stride, mut i) = (0, 0);
+    while i < Quantity::ALL.len() {
+        stride += Quantity::ALL[i].width();
+        i += 1;
+    }
+    stride
+};
+
+impl Layout {
+    pub(super) fn of(passes: &PassSet) -> Self {
+        let quantities = passes.quantities();
+        let mut offsets = [0; Quantity::ALL.len()];
+        let mut stride = 0;
+        for q in quantities.iter() {
+            offsets[q as usize] = stride as u8;
+            stride += q.width();
+        }
+        Self { quantities, offsets, stride }
+    }
+}
+
+/// A square of the film.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    x: u32,
+    y: u32,
+    width: u32,
+    height: u32,
+    layout: Layout,
+    /// Sum of weight × value, `layout.stride` numbers per pixel.
+    sums: Vec<f64>,
+    /// Samples taken in, per pixel.
+    counts: Vec<u32>,
+    /// Per pixel; empty where no pass needs it.
+    first_hits: Vec<FirstHit>,
+    /// Per pixel, per kind; empty where no pass needs it.
+    mattes: [Vec<Matte>; 3],
+    non_finite: NonFinite,
+}
+
+impl Tile {
+    pub(super) fn new(x: u32, y: u32, width: u32, height: u32, layout: Layout) -> Self {
+        let pixels = width as usize * height as usize;
+        let mattes = CryptoKind::ALL.map(|kind| {
+            let len = if layout.quantities.contains(kind.quantity()) { pixels } else { 0 };
+            vec![Matte::default(); len]
+        });
+        let first_hits = if layout.quantities.contains(Quantity::FirstHit) { pixels } else { 0 };
+        Self {
+            x,
+            y,
+            width,
+            height,
+            layout,
+            sums: vec![0.0; pixels * layout.stride],
+            counts: vec![0; pixels],
+            first_hits: vec![FirstHit::BACKGROUND; first_hits],
+            mattes,
+            non_finite: NonFinite::default(),
+        }
+    }
+
+    /// Column and row of every pixel in the tile, row by row.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let (x, y, width, height) = (self.x, self.y, self.width, self.height);
+        (y..y + height).flat_map(move |row| (x..x + width).map(move |column| (column, row)))
+    }
+
+    /// Left column, top row, width and height.
+    pub fn rect(&self) -> [u32; 4] {
+        [self.x, self.y, self.width, self.height]
+    }
+
+    /// Takes in a sample of a pixel of this tile. `weight` is the reconstruction filter's
+    /// ([`Filter::sample`](super::Filter::sample)): expected value 1. False where the sample was dropped
+    /// since a value of it is NaN or infinite.
+    pub fn add(&mut self, id: SampleId, weight: f32, sample: &PixelSample) -> bool {
+        let pixel = self.index(id.x, id.y);
+        let mut values = [0.0_f32; MAX_STRIDE];
+        let mut crypto = false;
+        for q in self.layout.quantities.iter() {
+            let (start, width) = (usize::from(self.layout.offsets[q as usize]), q.width());
+            values[start..start + width].copy_from_slice(&q.read(sample)[..width]);
+            crypto |= matches!(q, Quantity::CryptoObject | Quantity::CryptoMaterial | Quantity::CryptoAsset);
+        }
+        let values = &values[..self.layout.stride];
+        let coverage = if crypto { weight * sample.crypto.coverage } else { weight };
+        if !coverage.is_finite() || !values.iter().all(|value| value.is_finite()) {
+            self.non_finite.note(id);
+            return false;
+        }
+
+        let sums = &mut self.sums[pixel * self.layout.stride..][..self.layout.stride];
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += f64::from(weight) * f64::from(*value);
+        }
+        if crypto {
+            let ids = [sample.crypto.object, sample.crypto.material, sample.crypto.asset];
+            for (mattes, id) in self.mattes.iter_mut().zip(ids) {
+                if let Some(matte) = mattes.get_mut(pixel) {
+                    matte.add(id, coverage);
+                }
+            }
+        }
+        self.counts[pixel] += 1;
+        true
+    }
+
+    /// Keeps what the ray through the pixel's centre met; nothing happens where no pass needs it.
+    pub fn set_first_hit(&mut self, x: u32, y: u32, hit: FirstHit) {
+        let pixel = self.index(x, y);
+        if let Some(place) = self.first_hits.get_mut(pixel) {
+            *place = hit;
+        }
+    }
+
+    /// Samples taken in at a pixel of this tile.
+    pub fn count(&self, x: u32, y: u32) -> u32 {
+        self.counts[self.index(x, y)]
+    }
+
+    /// What was dropped.
+    pub fn non_finite(&self) -> NonFinite {
+        self.non_finite
+    }
+
+    pub(super) fn sums(&self, x: u32, y: u32) -> super::Means<'_> {
+        let pixel = self.index(x, y);
+        super::Means {
+            sums: &self.sums[pixel * self.layout.stride..][..self.layout.stride],
+            offsets: &self.layout.offsets,
+            count: self.counts[pixel],
+            first_hit: self.first_hits.get(pixel).copied().unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn matte(&self, kind: CryptoKind, x: u32, y: u32) -> Option<&Matte> {
+        self.mattes[kind as usize].get(self.index(x, y))
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let mattes: [usize; 3] = array::from_fn(|kind| {
+            let heap: usize = self.mattes[kind].iter().map(Matte::heap_bytes).sum();
+            heap + self.mattes[kind].len() * size_of::<Matte>()
+        });
+        size_of::<Self>()
+            + self.sums.len() * size_of::<f64>()
+            + self.counts.len() * size_of::<u32>()
+            + self.first_hits.len() * size_of::<FirstHit>()
+            + mattes.iter().sum::<usize>()
+    }
+
+    fn index(&self, x: u32, y: u32) -> usize {
+        debug_assert!(x >= self.x && x < self.x + self.width && y >= self.y && y < self.y + self.height);
+        (y - self.y) as usize * self.width as usize + (x - self.x) as usize
+    }
+}
