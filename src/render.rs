@@ -10,14 +10,14 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::film::{Film, Tile};
+use crate::film::{Film, SampleId, Tile};
 use crate::integrator;
 use crate::sampling::Sampler;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
 /// Longest wave, in samples per pixel: how much a stop may waste, and how often progress is told.
-const LONGEST_WAVE: u64 = 16;
+const LONGEST_WAVE: u32 = 16;
 
 /// How far a render is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Progress {
     /// Samples per pixel taken so far, the picture's mean.
     pub spp: f64,
     /// Samples per pixel at which it ends; `None` where only time ends it.
-    pub target_spp: Option<u64>,
+    pub target_spp: Option<u32>,
     /// Share of the work that is done, 0 to 1.
     pub done: f64,
     /// Since the first ray.
@@ -71,7 +71,7 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
             place: crate::error::Place::default(),
             what: format!("can't start {} render threads: {error}", settings.threads),
         })?;
-    let mut film = Film::new(scene.size[0], scene.size[1], &settings.passes);
+    let mut film = Film::new(scene.size[0], scene.size[1], settings.passes.clone());
     let job = Job::new(scene, settings, observer);
     pool.install(|| {
         if scene.effects.first_hit {
@@ -80,7 +80,7 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
         let mut taken = 0;
         let mut wave = 1;
         while taken < job.target && !job.stopped() {
-            let next = (taken + wave).min(job.target);
+            let next = taken.saturating_add(wave).min(job.target);
             film.tiles_mut().par_iter_mut().with_max_len(1).for_each(|tile| job.render_tile(tile, taken..next));
             taken = next;
             wave = (wave * 2).min(LONGEST_WAVE);
@@ -104,7 +104,7 @@ struct Job<'a> {
     sampler: Sampler,
     start: Instant,
     deadline: Option<Instant>,
-    target: u64,
+    target: u32,
     pixels: u64,
     samples: AtomicU64,
     cancelled: AtomicBool,
@@ -148,21 +148,18 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn render_tile(&self, tile: &mut Tile, samples: std::ops::Range<u64>) {
-        for row in tile.rows() {
+    fn render_tile(&self, tile: &mut Tile, samples: std::ops::Range<u32>) {
+        for (x, y) in tile.pixels() {
             self.check();
             if self.stopped() {
                 return;
             }
-            let mut done = 0;
-            for (x, y) in row {
-                for index in samples.clone() {
-                    let sampler = self.sampler.for_sample(x, y, index);
-                    tile.add(x, y, index, &integrator::sample(self.scene, self.settings, &sampler, x, y));
-                }
-                done += samples.end - samples.start;
+            for index in samples.clone() {
+                let sampler = self.sampler.for_sample(x, y, u64::from(index));
+                let (sample, weight) = integrator::sample(self.scene, self.settings, &sampler, x, y);
+                tile.add(SampleId { x, y, index }, weight, &sample);
             }
-            self.samples.fetch_add(done, Ordering::Relaxed);
+            self.samples.fetch_add(u64::from(samples.end - samples.start), Ordering::Relaxed);
         }
         let now = self.start.elapsed().as_millis() as u64;
         let told = self.told.load(Ordering::Relaxed);
@@ -175,7 +172,7 @@ impl<'a> Job<'a> {
     fn tell(&self) {
         let elapsed = self.start.elapsed();
         let spp = self.samples.load(Ordering::Relaxed) as f64 / self.pixels as f64;
-        let by_samples = spp / self.target as f64;
+        let by_samples = spp / f64::from(self.target);
         let by_time = self.settings.time.map_or(0.0, |t| elapsed.as_secs_f64() / t.max(1e-9));
         let done = by_samples.max(by_time).min(1.0);
         let remaining = (done > 0.0)

@@ -228,7 +228,7 @@ macro_rules! settings {
 }
 
 settings! {
-    spp: u64 = "64", Kind::Int { min: 1, max: 1 << 40 }, "N",
+    spp: u32 = "64", Kind::Int { min: 1, max: Settings::NO_LIMIT as u64 }, "N",
         "Samples per pixel";
     time: Option<f64> = "", Kind::Float { min: 0.0, max: 1e9 }, "SECONDS",
         "Stop after so many seconds of rendering, whatever the samples; alone, the only rule";
@@ -256,7 +256,7 @@ settings! {
 
 impl Settings {
     /// Samples per pixel of a render that something else ends.
-    pub const NO_LIMIT: u64 = 1 << 40;
+    pub const NO_LIMIT: u32 = u32::MAX;
 }
 
 #[cfg(test)]
@@ -275,7 +275,7 @@ mod tests {
     fn values_out_of_range_say_what_is_allowed() {
         let mut settings = Settings::default();
         let def = |name: &str| SETTINGS.iter().find(|d| d.name == name).unwrap();
-        assert_eq!(def("spp").set(&mut settings, "0").unwrap_err(), "must be from 1 to 1099511627776");
+        assert_eq!(def("spp").set(&mut settings, "0").unwrap_err(), "must be from 1 to 4294967295");
         assert!(def("spp").set(&mut settings, "many").is_err());
         assert!(def("integrator").set(&mut settings, "magic").unwrap_err().contains("path, direct, ao"));
         assert!(def("time").set(&mut settings, "NaN").is_err());

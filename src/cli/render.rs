@@ -179,7 +179,8 @@ fn debug_sample(
     }
     let (x, y) = (x as u32, y as u32);
     let sampler = penumbra::sampling::Sampler::new(settings.sampler, settings.seed).for_sample(x, y, index);
-    println!("{:#?}", penumbra::integrator::sample(scene, settings, &sampler, x, y));
+    let (sample, weight) = penumbra::integrator::sample(scene, settings, &sampler, x, y);
+    println!("{sample:#?}\nfilter weight {weight}");
     Ok(Outcome::Done)
 }
 

@@ -1,18 +1,15 @@
 //! What is known of the first surface: data passes, by every sample or by one ray through the
 //! pixel's centre.
 
-use crate::film::{CryptoIds, FirstHit, PixelSample};
+use crate::film::{CryptoSample, FirstHit, PixelSample};
 use crate::math::{Frame, Vec3};
 use crate::scene::{Interaction, RayCone, Scene, mask};
-
-/// Depth of the background, as Cycles writes it.
-const BACKGROUND_DEPTH: f32 = 1e10;
 
 /// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first.
 pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
     let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
     let Some(hit) = scene.closest_hit(&camera_ray.ray, mask::CAMERA) else {
-        return FirstHit { depth: BACKGROUND_DEPTH, ..FirstHit::default() };
+        return FirstHit::BACKGROUND;
     };
     let it = scene.interaction(&camera_ray.ray, &hit, RayCone { width: 0.0, spread: 0.0 });
     FirstHit {
@@ -39,6 +36,6 @@ pub fn describe(scene: &Scene, it: &Interaction, frame: &Frame, sample: &mut Pix
     if scene.effects.cryptomatte {
         let object = &scene.ids.objects[it.instance as usize];
         let material = &scene.ids.materials[it.material as usize];
-        sample.crypto = Some(CryptoIds { object: object.object, material: material.material, asset: object.asset });
+        sample.crypto = CryptoSample { object: object.object, material: material.material, asset: object.asset, coverage: 1.0 };
     }
 }

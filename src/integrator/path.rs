@@ -72,6 +72,7 @@ pub fn trace(
     settings: &Settings,
     max_bounces: u32,
 ) -> PixelSample {
+    let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
     let mut sample = PixelSample::default();
     let mut path = Path::from_camera(ray, cone);
     loop {
@@ -87,9 +88,6 @@ pub fn trace(
                 let open = ao::openness(scene, sampler, path.vertex, &it, &frame, ao::distance(settings));
                 sample.ao = Rgb::splat(open);
             }
-            if !scene.effects.radiance {
-                break;
-            }
         }
         add_emission(scene, &path, &it, &mut sample);
         if scene.material(&it).unlit || path.scatterings > max_bounces {
@@ -99,10 +97,13 @@ pub fn trace(
 
         let surface = scene.surface(&it);
         let bsdf = Bsdf::new(&surface, it.front);
-        if path.scatterings == 0 && (scene.effects.light_paths || scene.effects.geometry) {
+        if path.scatterings == 0 && scene.effects.color {
             let color = bsdf.albedo(frame.to_local(it.wo));
             sample.color = to_film(color);
             sample.denoising_albedo += color.sum();
+        }
+        if !scene.effects.light {
+            break;
         }
         add_direct(scene, sampler, &path, &it, &frame, &bsdf, &mut sample);
         if !scatter(scene, sampler, &mut path, &it, &frame, &bsdf, &mut sample) || !survives(sampler, &mut path) {

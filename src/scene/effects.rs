@@ -4,14 +4,14 @@
 //! point: per pixel, per hit or per bounce.
 
 use crate::desc::{AlphaMode, ColorInput, MaterialDesc, ScalarInput, SceneDesc};
-use crate::film::PassSet;
+use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
 /// Effects that a render simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
-    /// Radiance of any kind is asked for.
-    pub radiance: bool,
+    /// Light that arrives at surfaces.
+    pub light: bool,
     /// Light after more than one scattering.
     pub indirect: bool,
     /// Some surface lets light pass unscattered: cut-outs and blends.
@@ -24,9 +24,9 @@ pub struct Effects {
     pub ao: bool,
     /// The shadow and unshadowed passes.
     pub shadow: bool,
-    /// The colour passes and the split into direct and indirect by class.
-    pub light_paths: bool,
-    /// Data passes that average over samples: normal, uv, denoising.
+    /// The albedo of the first surface.
+    pub color: bool,
+    /// Data of the first surface that average over samples: normal, uv, denoising.
     pub geometry: bool,
     /// Passes that take one ray through the pixel's centre.
     pub first_hit: bool,
@@ -49,8 +49,7 @@ impl Effects {
             scene.materials.iter().zip(&used).any(|(material, used)| *used && test(material))
         };
         Self {
-            radiance: passes.needs_radiance(),
-            indirect: passes.needs_radiance() && settings.max_bounces > 0,
+            indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| !is_opaque(scene, m)),
             absorption: any(&absorbs),
             occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
@@ -61,15 +60,15 @@ impl Effects {
     /// Everything on that the passes can show.
     fn forced(passes: &PassSet) -> Self {
         Self {
-            radiance: passes.needs_radiance(),
-            indirect: passes.needs_radiance(),
+            light: passes.needs_light(),
+            indirect: passes.needs_indirect(),
             cutouts: true,
             absorption: true,
             occlusion_maps: true,
             ao: passes.needs_ao(),
             shadow: passes.needs_shadow(),
-            light_paths: passes.needs_light_paths(),
-            geometry: passes.needs_geometry(),
+            color: passes.needs_color() || passes.needs_denoising(),
+            geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs_denoising(),
             first_hit: passes.needs_first_hit(),
             cryptomatte: passes.needs_cryptomatte(),
         }

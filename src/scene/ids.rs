@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::desc::{MaterialDesc, SceneDesc};
-use crate::film::crypto_id;
+use crate::film::cryptomatte::id_from_name;
 
 /// Identity of one object.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,8 +48,8 @@ impl Ids {
                 names[2].push(instance.asset.clone());
                 ObjectId {
                     index: instance.object_index,
-                    object: crypto_id(&instance.name),
-                    asset: crypto_id(&instance.asset),
+                    object: id_from_name(&instance.name),
+                    asset: id_from_name(&instance.asset),
                 }
             })
             .collect();
@@ -61,7 +61,7 @@ impl Ids {
             .chain([&fallback])
             .map(|material| {
                 names[1].push(material.name.clone());
-                MaterialId { index: material.material_index, material: crypto_id(&material.name) }
+                MaterialId { index: material.material_index, material: id_from_name(&material.name) }
             })
             .collect();
         for list in &mut names {

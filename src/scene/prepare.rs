@@ -12,6 +12,7 @@ use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, SceneDesc, WorldDesc};
 use crate::error::{Result, Warnings};
+use crate::film::Quantity;
 use crate::light::LightSet;
 use crate::math::DVec3;
 use crate::settings::Settings;
@@ -58,7 +59,7 @@ pub fn prepare(desc: &SceneDesc, view: &View, settings: &Settings) -> Result<Pre
 
     let default_world = default_world(desc, &materials, &mut warnings);
     let world = desc.world.as_ref().or(default_world.as_ref());
-    let lights = if effects.radiance {
+    let lights = if effects.light || settings.passes.needs(Quantity::Environment) {
         lights::prepare(desc, world, origin, &mut geometry, &materials, &textures, &mut warnings)
     } else {
         Vec::new()
