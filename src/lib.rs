@@ -1,5 +1,6 @@
 //! Penumbra: a production render engine for shadows, ambient occlusion and honest noise figures.
 
+pub mod bsdf;
 pub mod desc;
 pub mod error;
 pub mod import;
