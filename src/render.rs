@@ -64,13 +64,12 @@ pub struct Rendered {
 /// # Errors
 /// Threads that can't be started.
 pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Result<Rendered> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads as usize)
-        .build()
-        .map_err(|error| Error::Unsupported {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build().map_err(|error| {
+        Error::Unsupported {
             place: crate::error::Place::default(),
             what: format!("can't start {} render threads: {error}", settings.threads),
-        })?;
+        }
+    })?;
     let mut film = Film::new(scene.size[0], scene.size[1], settings.passes.clone());
     let job = Job::new(scene, settings, observer);
     pool.install(|| {

@@ -213,10 +213,10 @@ macro_rules! settings {
             default: $default,
             help: $help,
             set: |settings, text| {
-                settings.$name = <$type>::parse(text, $kind)?;
+                settings.$name = <$type as Value>::parse(text, $kind)?;
                 Ok(())
             },
-            get: |settings| settings.$name.show(),
+            get: |settings| Value::show(&settings.$name),
         }),+];
 
         impl Default for Settings {

@@ -34,7 +34,7 @@ fn inside_a_closed_glowing_sphere_everything_is_le_over_one_minus_albedo() {
         let mut builder = Builder::default();
         let material = emitter(&mut builder, 1.0 - albedo, albedo);
         builder.sphere(16, false, material, DAffine3::IDENTITY);
-        builder.look([0.0, 0.0, 0.0], DOWN, 0.4);
+        builder.look([0.0, -0.5, 0.0], DOWN, 0.4);
         let settings = Settings { max_bounces: 200, ..settings("combined", 256) };
         let picture = picture(&builder.desc, 8, &settings);
         close(&format!("albedo {albedo}"), mean(&picture, "Combined", 0), 1.0, 4e-3);

@@ -24,7 +24,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("settings", &["film", "sampling"]),
     (
         "scene",
-        &["bsdf", "bvh", "camera", "desc", "error", "film", "light", "math", "sampling", "settings", "shape", "texture"],
+        &[
+            "bsdf", "bvh", "camera", "desc", "error", "film", "light", "math", "sampling", "settings", "shape",
+            "texture",
+        ],
     ),
     ("integrator", &["bsdf", "bvh", "film", "light", "math", "sampling", "scene", "settings"]),
     ("render", &["error", "film", "integrator", "sampling", "scene", "settings"]),
@@ -90,7 +93,8 @@ fn unsafe_stands_in_the_tree_alone() {
     for file in rust_files(&source()) {
         let is_unsafe = code(&file).lines().any(|line| {
             let line = line.trim_start();
-            !line.starts_with("//") && (line.contains("unsafe {") || line.contains("unsafe fn") || line.contains("unsafe impl"))
+            !line.starts_with("//")
+                && (line.contains("unsafe {") || line.contains("unsafe fn") || line.contains("unsafe impl"))
         });
         assert!(!is_unsafe || room(&file) == "bvh", "unsafe in {}", file.display());
     }

@@ -12,6 +12,10 @@ use super::node::{BLOCK, Block};
 use super::ray::RaySetup;
 use super::simd::Lanes;
 
+/// Rounding of the distance of a point from the plane of three others, in units of their largest
+/// coordinate relative to the point: a subtraction, a cross and a dot product.
+const PLANE_ROUNDING: f32 = 3.0 * f32::EPSILON;
+
 /// The nearest hit so far. `triangle` is [`Best::NONE`] as long as there is none, and `t` the end
 /// of the ray then.
 #[derive(Clone, Copy)]
@@ -62,15 +66,15 @@ unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<C
         let [x, y, z] = ray.axes;
         let origin = [F::splat(ray.o[x]), F::splat(ray.o[y]), F::splat(ray.o[z])];
         let shear = [F::splat(ray.shear[0]), F::splat(ray.shear[1])];
-        let to_ray = |vertex: &[[f32; BLOCK]; 3]| {
-            let pz = F::load(vertex.get_unchecked(z)).sub(origin[2]);
-            let px = F::load(vertex.get_unchecked(x)).sub(origin[0]).sub(shear[0].mul(pz));
-            let py = F::load(vertex.get_unchecked(y)).sub(origin[1]).sub(shear[1].mul(pz));
-            [px, py, pz]
+        let vertex = |k: usize| {
+            let vertex = &block.vertices[k];
+            [x, y, z].map(|axis| F::load(vertex.get_unchecked(axis)))
         };
-        let a = to_ray(&block.vertices[0]);
-        let b = to_ray(&block.vertices[1]);
-        let c = to_ray(&block.vertices[2]);
+        let from_origin = |v: [F; 3]| [v[0].sub(origin[0]), v[1].sub(origin[1]), v[2].sub(origin[2])];
+        let sheared = |v: [F; 3]| [v[0].sub(shear[0].mul(v[2])), v[1].sub(shear[1].mul(v[2])), v[2]];
+        let a = sheared(from_origin(vertex(0)));
+        let b = sheared(from_origin(vertex(1)));
+        let c = sheared(from_origin(vertex(2)));
         let u = c[0].mul(b[1]).sub(c[1].mul(b[0]));
         let v = a[0].mul(c[1]).sub(a[1].mul(c[0]));
         let w = b[0].mul(a[1]).sub(b[1].mul(a[0]));
@@ -84,14 +88,47 @@ unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<C
         let unsure = inside & (low.eq(zero) | high.eq(zero));
         let det = u.add(v).add(w);
         let rcp = F::splat(1.0).div(det);
-        let depth = u.mul(a[2]).add(v.mul(b[2])).add(w.mul(c[2])).mul(F::splat(ray.shear[2]));
-        let mut found = Candidates { inside: 0, t: depth.mul(rcp), u: v.mul(rcp), v: w.mul(rcp) };
+        let (t, on_plane) = distance([vertex(0), vertex(1), vertex(2)], origin, ray);
+        let mut found = Candidates { inside: 0, t, u: v.mul(rcp), v: w.mul(rcp) };
         inside &= !det.eq(zero);
         if unsure != 0 {
             inside = exact(unsure, inside, [a, b, c], ray.shear[2], &mut found);
         }
-        found.inside = inside;
+        found.inside = inside & !on_plane;
         Some(found)
+    }
+}
+
+/// Where the line of the ray meets the planes of the triangles, and the lanes whose plane holds the
+/// ray's origin to within rounding.
+///
+/// By the plane and not by blending the vertices' depths with `U`, `V`, `W`: in a long triangle
+/// those cancel, and `t` would be off by thousandths of its length. Rays that start on a surface do
+/// not hit it, nor one that coincides with it, whatever their direction.
+///
+/// # Safety
+/// As for [`Lanes`].
+#[inline(always)]
+unsafe fn distance<F: Lanes<BLOCK>>(vertices: [[F; 3]; 3], origin: [F; 3], ray: &RaySetup) -> (F, u32) {
+    unsafe {
+        let [a, b, c] = vertices;
+        let e = [b[0].sub(a[0]), b[1].sub(a[1]), b[2].sub(a[2])];
+        let f = [c[0].sub(a[0]), c[1].sub(a[1]), c[2].sub(a[2])];
+        let n = [
+            e[1].mul(f[2]).sub(e[2].mul(f[1])),
+            e[2].mul(f[0]).sub(e[0].mul(f[2])),
+            e[0].mul(f[1]).sub(e[1].mul(f[0])),
+        ];
+        let abs = |v: F| v.max(F::splat(0.0).sub(v));
+        let largest = |v: [F; 3]| abs(v[0]).max(abs(v[1])).max(abs(v[2]));
+        let a = [a[0].sub(origin[0]), a[1].sub(origin[1]), a[2].sub(origin[2])];
+        let height = a[0].mul(n[0]).add(a[1].mul(n[1])).add(a[2].mul(n[2]));
+        let slope = n[0].mul(F::splat(ray.shear[0])).add(n[1].mul(F::splat(ray.shear[1]))).add(n[2]);
+        let t = height.div(slope).mul(F::splat(ray.shear[2]));
+        let reach = largest(a).max(largest(e)).max(largest(f));
+        let limit = reach.mul(abs(n[0]).add(abs(n[1])).add(abs(n[2]))).mul(F::splat(PLANE_ROUNDING));
+        // A triangle so small that this underflows is no plane to start on.
+        (t, abs(height).le(limit) & !limit.eq(F::splat(0.0)))
     }
 }
 
@@ -177,7 +214,7 @@ pub(super) unsafe fn closest<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup, ins
     }
 }
 
-/// True where a triangle of `block` is hit at `0 <= t < t_max`.
+/// True where a triangle of `block` is hit before `t_max`.
 ///
 /// # Safety
 /// As for [`Lanes`].
@@ -231,8 +268,17 @@ mod tests {
             assert_eq!(shoot(T, [0.25, 0.5, 0.0], [0.0, 0.0, 2.0], t_max).triangle != Best::NONE, hits);
         }
         assert_eq!(shoot(T, [0.25, 0.5, 3.0], [0.0, 0.0, 1.0], f32::INFINITY).triangle, Best::NONE);
-        let near = shoot(T, [0.25, 0.5, 2.0_f32.next_down()], [0.0, 0.0, 1.0], f32::INFINITY);
-        assert_eq!((near.triangle, near.t), (9, 2.0 - 2.0_f32.next_down()));
+        let near = shoot(T, [0.25, 0.5, 2.0 - 1e-5], [0.0, 0.0, 1.0], f32::INFINITY);
+        assert_eq!((near.triangle, near.t), (9, 2.0 - (2.0_f32 - 1e-5)));
+    }
+
+    #[test]
+    fn a_ray_that_starts_in_the_plane_leaves_it() {
+        for o in [[0.25, 0.5, 2.0], [0.25, 0.5, 2.0_f32.next_down()], [0.25, 0.5, 2.0_f32.next_up()]] {
+            for d in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 1e-6]] {
+                assert_eq!(shoot(T, o, d, f32::INFINITY).triangle, Best::NONE);
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Next-event estimation: one light, one point on it, one shadow ray.
 
-use crate::bsdf::{Bsdf, ByLobe};
+use crate::bsdf::{ByLobe, View};
 use crate::light::{Emitter, LightSample};
 use crate::math::{Frame, Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
@@ -24,7 +24,7 @@ pub fn sample_light(
     vertex: u32,
     it: &Interaction,
     frame: &Frame,
-    bsdf: &Bsdf,
+    bsdf: &View<'_>,
     want_irradiance: bool,
 ) -> Option<DirectLight> {
     let choice = scene.lights.choose(it.p, sampler.get_1d(Dimension::at_bounce(vertex, Decision::LightChoice)))?;
@@ -33,14 +33,14 @@ pub fn sample_light(
     let LightSample { li, wi, dist, pdf, delta } = light.sample_li(it.p, choice.u, u)?;
     let pdf = pdf * choice.pmf;
     let local_wi = frame.to_local(wi);
-    let eval = if leaks(it, wi, local_wi.z) { None } else { Some(bsdf.eval(frame.to_local(it.wo), local_wi)) };
+    let eval = if leaks(it, wi, local_wi.z) { None } else { Some(bsdf.eval(local_wi)) };
     let unoccluded = eval.map_or(ByLobe::BLACK, |eval| {
         let weight = if delta { 1.0 } else { power_heuristic(pdf, eval.pdf) };
         eval.f_cos * (li * (weight / pdf))
     });
     let lit_side = it.ng.dot(wi) * it.ng.dot(it.wo) > 0.0;
     let irradiance = if want_irradiance && lit_side { li * (local_wi.z.max(0.0) / pdf) } else { Rgb::BLACK };
-    if unoccluded.is_black() && irradiance.is_black() {
+    if unoccluded.sum().is_black() && irradiance.is_black() {
         return None;
     }
     let ray = Ray { t_max: dist, ..it.spawn(wi) };

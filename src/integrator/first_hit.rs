@@ -36,6 +36,7 @@ pub fn describe(scene: &Scene, it: &Interaction, frame: &Frame, sample: &mut Pix
     if scene.effects.cryptomatte {
         let object = &scene.ids.objects[it.instance as usize];
         let material = &scene.ids.materials[it.material as usize];
-        sample.crypto = CryptoSample { object: object.object, material: material.material, asset: object.asset, coverage: 1.0 };
+        sample.crypto =
+            CryptoSample { object: object.object, material: material.material, asset: object.asset, coverage: 1.0 };
     }
 }

@@ -8,7 +8,7 @@ use super::direct::{leaks, sample_light};
 use super::first_hit::describe;
 use super::shadow::{emission_weight, unoccluded_emission};
 use super::split::{add_scattered, shares, to_film};
-use crate::bsdf::{Bsdf, ByLobe, Lobe};
+use crate::bsdf::{Bsdf, ByLobe, Lobe, View};
 use crate::film::PixelSample;
 use crate::light::Emitter;
 use crate::math::{Frame, Ray, Rgb, Vec3};
@@ -95,17 +95,19 @@ pub fn trace(
         }
         path.beta *= path.occlusion;
 
-        let surface = scene.surface(&it);
-        let bsdf = Bsdf::new(&surface, it.front);
+        let surface = Bsdf::new(&scene.surface(&it), it.front);
+        let bsdf = surface.view(frame.to_local(it.wo));
         if path.scatterings == 0 && scene.effects.color {
-            let color = bsdf.albedo(frame.to_local(it.wo));
+            let color = bsdf.albedo();
             sample.color = to_film(color);
             sample.denoising_albedo += color.sum();
         }
         if !scene.effects.light {
             break;
         }
-        add_direct(scene, sampler, &path, &it, &frame, &bsdf, &mut sample);
+        if !surface.is_delta_only() || (scene.effects.shadow && path.scatterings == 0) {
+            add_direct(scene, sampler, &path, &it, &frame, &bsdf, &mut sample);
+        }
         if !scatter(scene, sampler, &mut path, &it, &frame, &bsdf, &mut sample) || !survives(sampler, &mut path) {
             break;
         }
@@ -139,12 +141,7 @@ fn next_surface(scene: &Scene, sampler: &Sampler, path: &mut Path) -> Option<Int
 }
 
 /// The first surface that a ray from the camera does not pass, and its index of decisions.
-pub fn first_surface(
-    scene: &Scene,
-    sampler: &Sampler,
-    ray: Ray,
-    cone: RayCone,
-) -> Option<(Interaction, u32)> {
+pub fn first_surface(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone) -> Option<(Interaction, u32)> {
     let mut path = Path::from_camera(ray, cone);
     next_surface(scene, sampler, &mut path).map(|it| (it, path.vertex))
 }
@@ -194,14 +191,11 @@ fn add_direct(
     path: &Path,
     it: &Interaction,
     frame: &Frame,
-    bsdf: &Bsdf,
+    bsdf: &View<'_>,
     sample: &mut PixelSample,
 ) {
     let first = path.scatterings == 0;
     let shadow = first && scene.effects.shadow;
-    if scene.lights.is_empty() || (bsdf.is_delta() && !shadow) {
-        return;
-    }
     let Some(light) = sample_light(scene, sampler, path.vertex, it, frame, bsdf, shadow) else { return };
     let arrives = light.unoccluded * light.visibility;
     if first {
@@ -225,12 +219,12 @@ fn scatter(
     path: &mut Path,
     it: &Interaction,
     frame: &Frame,
-    bsdf: &Bsdf,
+    bsdf: &View<'_>,
     sample: &mut PixelSample,
 ) -> bool {
     let uc = sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::BsdfLobe));
     let u = sampler.get_2d(Dimension::at_bounce(path.vertex, Decision::BsdfDirection));
-    let Some(scattered) = bsdf.sample(frame.to_local(it.wo), uc, u) else { return false };
+    let Some(scattered) = bsdf.sample(uc, u) else { return false };
     let wi = frame.to_world(scattered.wi);
     if leaks(it, wi, scattered.wi.z) {
         return false;
@@ -244,7 +238,7 @@ fn scatter(
     }
     if path.scatterings == 0 {
         path.shares = shares(scattered.weight);
-        if scene.effects.shadow && !scattered.weight.diffuse.is_black() {
+        if scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK {
             let emission = unoccluded_emission(scene, it.p, &path.ray, path.cone, scattered.pdf);
             sample.unshadowed += scattered.weight.diffuse * path.beta * emission;
         }

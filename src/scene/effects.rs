@@ -3,7 +3,7 @@
 //! Absent effects build nothing and cast nothing. Every test of these flags stands at a coarse
 //! point: per pixel, per hit or per bounce.
 
-use crate::desc::{AlphaMode, ColorInput, MaterialDesc, ScalarInput, SceneDesc};
+use crate::desc::{AlphaMode, MaterialDesc, ScalarInput, SceneDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -97,7 +97,7 @@ fn has_vertex_alpha(scene: &SceneDesc) -> bool {
 }
 
 /// True where some light can be refracted into the material.
-pub(super) fn transmits(material: &MaterialDesc) -> bool {
+fn transmits(material: &MaterialDesc) -> bool {
     scalar_can_be_positive(&material.transmission)
 }
 
@@ -110,15 +110,6 @@ fn absorbs(material: &MaterialDesc) -> bool {
         })
 }
 
-/// True where the material emits anywhere.
-pub(super) fn emits(material: &MaterialDesc) -> bool {
-    !material.unlit && material.emission_strength > 0.0 && color_can_be_positive(&material.emission)
-}
-
 fn scalar_can_be_positive(input: &ScalarInput) -> bool {
     input.factor > 0.0
-}
-
-fn color_can_be_positive(input: &ColorInput) -> bool {
-    input.factor.iter().any(|&c| c > 0.0)
 }

@@ -28,9 +28,7 @@ pub fn world_bounds(scene: &SceneDesc) -> Option<(DVec3, DVec3)> {
 }
 
 fn union(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVec3)> {
-    boxes
-        .filter(|(min, max)| min.is_finite() && max.is_finite())
-        .reduce(|(min, max), (a, b)| (min.min(a), max.max(b)))
+    boxes.filter(|(min, max)| min.is_finite() && max.is_finite()).reduce(|(min, max), (a, b)| (min.min(a), max.max(b)))
 }
 
 /// A camera that sees all of `scene` in a picture of width over height `aspect`: from the front,

@@ -59,9 +59,11 @@ impl Instance {
     /// `p` in render space, with the bound of its error grown by what the transform adds.
     pub fn point(&self, p: Vec3, p_err: Vec3) -> (Vec3, Vec3) {
         let m = &self.object_to_render;
-        let magnitude =
-            |v: Vec3| Vec3::from(m.matrix3.x_axis.abs() * v.x + m.matrix3.y_axis.abs() * v.y + m.matrix3.z_axis.abs() * v.z);
-        let p_err = magnitude(p_err) * (1.0 + gamma(3)) + (magnitude(p.abs()) + Vec3::from(m.translation).abs()) * gamma(4);
+        let magnitude = |v: Vec3| {
+            Vec3::from(m.matrix3.x_axis.abs() * v.x + m.matrix3.y_axis.abs() * v.y + m.matrix3.z_axis.abs() * v.z)
+        };
+        let p_err =
+            magnitude(p_err) * (1.0 + gamma(3)) + (magnitude(p.abs()) + Vec3::from(m.translation).abs()) * gamma(8);
         (m.transform_point3(p), p_err)
     }
 }

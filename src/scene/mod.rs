@@ -6,7 +6,6 @@ mod framing;
 mod ids;
 mod instance;
 mod interaction;
-mod lights;
 mod material;
 mod prepare;
 mod trace;
@@ -29,7 +28,6 @@ use crate::shape::Mesh;
 use crate::texture::Texture;
 
 /// Everything that a ray can ask.
-#[derive(Debug)]
 pub struct Scene {
     /// The camera.
     pub camera: Camera,

@@ -27,7 +27,6 @@ pub struct View {
 }
 
 /// A scene ready to be traced, and what it took.
-#[derive(Debug)]
 pub struct Prepared {
     /// The scene.
     pub scene: Scene,

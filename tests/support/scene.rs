@@ -85,9 +85,7 @@ impl Builder {
         let at = |i: u32, j: u32| i * 2 * n + j % (2 * n);
         let triangles = (0..n)
             .flat_map(|i| (0..2 * n).map(move |j| (i, j)))
-            .flat_map(|(i, j)| {
-                [[at(i, j), at(i, j + 1), at(i + 1, j)], [at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]]
-            })
+            .flat_map(|(i, j)| [[at(i, j), at(i, j + 1), at(i + 1, j)], [at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]])
             .collect();
         let normals = smooth.then(|| Attribute::Point(points.clone()));
         self.instance(MeshDesc { points, triangles, normals, ..MeshDesc::default() }, material, transform);

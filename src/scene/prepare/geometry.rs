@@ -66,8 +66,7 @@ pub fn prepare(desc: &SceneDesc, origin: DVec3, materials: &[Material], warnings
 fn prepare_mesh(desc: &MeshDesc) -> Mesh {
     let bounds = Bounds::of_points(desc.points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
     let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
-    let points: Vec<Vec3> =
-        desc.points.iter().map(|p| (DVec3::from(p.map(f64::from)) - center).as_vec3()).collect();
+    let points: Vec<Vec3> = desc.points.iter().map(|p| (DVec3::from(p.map(f64::from)) - center).as_vec3()).collect();
     Mesh {
         center,
         points,
@@ -89,8 +88,7 @@ fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::
 
 /// `desc` in render space; `None` where its transform can't be undone or leaves the range of `f32`.
 fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32) -> Option<Instance> {
-    let to_render =
-        DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(mesh.center);
+    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(mesh.center);
     let inverse = to_render.matrix3.inverse();
     let object_to_render = Affine3A::from_cols(
         to_render.matrix3.x_axis.as_vec3a(),

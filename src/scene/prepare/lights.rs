@@ -128,7 +128,8 @@ impl TexturedEmission {
         let (factor, input) = self.slot(triangle);
         let Some(input) = input else { return factor };
         let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return factor };
-        let [r, g, b, _] = self.textures[input.texture as usize].lookup(input.transform.apply(uv.to_array()), footprint);
+        let [r, g, b, _] =
+            self.textures[input.texture as usize].lookup(input.transform.apply(uv.to_array()), footprint);
         factor * Rgb::new(r, g, b)
     }
 
@@ -167,8 +168,11 @@ fn mesh_light(
         let factor = if material.emits() && !material.is_cutout() { factor } else { Rgb::BLACK };
         (factor, texture.map(|i| material.inputs[usize::from(i)]))
     };
-    let emission =
-        TexturedEmission { mesh: mesh.clone(), textures: textures.clone(), slots: instance.materials.iter().map(slot).collect() };
+    let emission = TexturedEmission {
+        mesh: mesh.clone(),
+        textures: textures.clone(),
+        slots: instance.materials.iter().map(slot).collect(),
+    };
     let triangles: Vec<EmissiveTriangle> = (0..mesh.triangles.len() as u32)
         .filter_map(|index| {
             let p = mesh.corners(index).map(|p| instance.object_to_render.transform_point3(p));

@@ -130,10 +130,10 @@ impl Builder<'_> {
             absorption: volume.map_or(Rgb::BLACK, |v| absorption(&v)),
             emission: self.color(&mut inputs, &emission),
             unlit: desc.unlit,
-            normal: desc.normal.filter(|n| n.scale != 0.0).map(|n| NormalInput {
-                input: self.textures.input(&n.texture),
-                scale: n.scale as f32,
-            }),
+            normal: desc
+                .normal
+                .filter(|n| n.scale != 0.0)
+                .map(|n| NormalInput { input: self.textures.input(&n.texture), scale: n.scale as f32 }),
             occlusion: desc
                 .occlusion
                 .filter(|o| self.settings.occlusion_maps && o.factor != 0.0 && o.texture.is_some())
@@ -165,7 +165,8 @@ fn warn_of_effects_to_come(desc: &MaterialDesc, warnings: &mut Warnings) {
     .filter_map(|(name, there)| there.then_some(name))
     .collect();
     if !missing.is_empty() {
-        let what = format!("material \"{}\" is rendered without its {}: not computed yet", desc.name, missing.join(", "));
+        let what =
+            format!("material \"{}\" is rendered without its {}: not computed yet", desc.name, missing.join(", "));
         warnings.push(&desc.place, what);
     }
 }
