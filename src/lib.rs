@@ -5,3 +5,4 @@ pub mod error;
 pub mod film;
 pub mod import;
 pub mod math;
+pub mod output;
