@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn known_values_of_srgb() {
-        // 0.214041 is the linear value of code 127.5 / 255; 0.18 is photographic grey, code 118.
+        // 0.18, photographic grey, is code 117.7.
         let (bytes, color) =
             encode(&layer("RGB", vec![0.0, 0.18, 1.0, 0.003, 7.0, -1.0, f32::NAN, f32::INFINITY, 0.5]));
         assert_eq!(bytes, [0, 118, 255, 10, 255, 0, 0, 255, 188]);
