@@ -10,6 +10,7 @@ pub mod import;
 pub mod integrator;
 pub mod light;
 pub mod math;
+pub mod output;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -1,0 +1,104 @@
+//! Files that are there in full or not at all.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::error::{Error, Result};
+
+/// Lets `write` fill a temporary file beside `path`, then puts it in the place of `path` in one step.
+///
+/// Whoever reads `path` meanwhile sees the old file. Where something fails (a full disk, a folder that
+/// can't be written) the temporary file is removed, the old file stays, and the error names `path`.
+pub(super) fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) -> Result<()> {
+    let failed = |source| Error::io(path, "can't write", source);
+    // A link stays a link: what it points at is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if fs::metadata(&target).is_ok_and(|data| !data.is_file()) {
+        return Err(failed(io::Error::other("it is there and is not a regular file")));
+    }
+    let temporary = beside(&target).map_err(failed)?;
+    let file = File::create_new(&temporary).map_err(failed)?;
+    let done = write(&file).and_then(|()| file.sync_all());
+    drop(file);
+    done.and_then(|()| fs::rename(&temporary, &target)).map_err(|error| {
+        // The error to tell is the first one.
+        let _ = fs::remove_file(&temporary);
+        failed(error)
+    })
+}
+
+/// A name in the same folder that no other writer, in this process or another, takes.
+fn beside(path: &Path) -> io::Result<PathBuf> {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let name = path.file_name().ok_or_else(|| io::Error::other("it does not name a file"))?;
+    let unique = format!(".{}-{}.part", process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(unique);
+    Ok(path.with_file_name(hidden))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("folder");
+        entries.map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned()).collect()
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("out.exr");
+        fs::write(&path, "old").expect("write");
+        let error = replace(&path, |mut file| {
+            file.write_all(b"half of it")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        })
+        .expect_err("disk full");
+        let Error::Io { place, source, .. } = &error else { panic!("{error}") };
+        assert_eq!(place.file.as_deref(), Some(path.as_path()));
+        assert_eq!(source.kind(), io::ErrorKind::StorageFull);
+        assert_eq!(fs::read_to_string(&path).expect("read"), "old");
+        assert_eq!(names(folder.path()), ["out.exr"]);
+    }
+
+    #[test]
+    fn a_good_write_replaces_the_old_file() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("out.png");
+        for text in ["one", "two"] {
+            replace(&path, |mut file| file.write_all(text.as_bytes())).expect("write");
+            assert_eq!(fs::read_to_string(&path).expect("read"), text);
+        }
+        assert_eq!(names(folder.path()), ["out.png"]);
+    }
+
+    #[test]
+    fn places_that_are_no_file_are_refused() {
+        let folder = tempfile::tempdir().expect("folder");
+        for path in [folder.path().to_owned(), folder.path().join("no/such/out.exr"), "/".into(), "/dev/full".into()] {
+            let error = replace(&path, |_| Ok(())).expect_err("refused");
+            assert!(error.to_string().contains(&*path.to_string_lossy()), "{error}");
+        }
+        assert!(names(folder.path()).is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().expect("folder");
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").expect("write");
+        std::os::unix::fs::symlink(&file, &link).expect("link");
+        replace(&link, |mut out| out.write_all(b"new")).expect("write");
+        assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
+        assert_eq!(fs::read_to_string(&file).expect("read"), "new");
+    }
+}

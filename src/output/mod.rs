@@ -1,0 +1,8 @@
+//! Files out: the multi-layer EXR that production reads, and a PNG to look at.
+
+pub mod exr;
+mod file;
+mod metadata;
+pub mod png;
+
+pub use metadata::Metadata;
