@@ -250,6 +250,8 @@ settings! {
         "Seed of every random decision; the same seed gives the same bits";
     threads: u32 = "0", Kind::Int { min: 0, max: 4096 }, "N",
         "Threads; 0 for one per core";
+    half: bool = "off", Kind::Bool, "on|off",
+        "Write colour passes as half floats; data passes stay float";
     effects: EffectsMode = "auto", Kind::Choice(EFFECTS), "auto|all",
         "Simulate the effects that the scene calls for, or all of them (the same picture, slower)";
 }

@@ -10,7 +10,8 @@ use penumbra::error::Place;
 use penumbra::import::image::load_image;
 
 pub fn args() -> [Arg; 3] {
-    let number = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(f64)).allow_negative_numbers(true);
+    let number =
+        |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(f64)).allow_negative_numbers(true);
     [
         Arg::new("environment")
             .long("environment")

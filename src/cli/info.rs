@@ -11,7 +11,13 @@ pub fn command() -> Command {
     Command::new("info")
         .about("Show what a scene holds: meshes, instances, materials, cameras, lights with their units")
         .args(super::scene::args())
-        .arg(Arg::new("frame").long("frame").value_name("F").value_parser(clap::value_parser!(f64)).help("Frame to read"))
+        .arg(
+            Arg::new("frame")
+                .long("frame")
+                .value_name("F")
+                .value_parser(clap::value_parser!(f64))
+                .help("Frame to read"),
+        )
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
 }
 
@@ -110,12 +116,18 @@ fn print(info: &Value) {
         info["instances"]
     );
     for mesh in list("meshes") {
-        println!("  mesh {}: {} points, {} triangles, {} instances", mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]);
+        println!(
+            "  mesh {}: {} points, {} triangles, {} instances",
+            mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]
+        );
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
     println!("  {} materials: {}", names.len(), names.join(", "));
     for image in list("images") {
-        println!("  image {}: {}x{}, {} channels, {} bytes", image["name"], image["size"][0], image["size"][1], image["channels"], image["bytes"]);
+        println!(
+            "  image {}: {}x{}, {} channels, {} bytes",
+            image["name"], image["size"][0], image["size"][1], image["channels"], image["bytes"]
+        );
     }
     for camera in list("cameras") {
         let lens = camera.get("fov_y_deg").map_or_else(
@@ -125,10 +137,21 @@ fn print(info: &Value) {
         println!("  camera {}: {lens}", camera["name"]);
     }
     for light in list("lights") {
-        println!("  {} light {}: {} {}", light["kind"].as_str().unwrap_or_default(), light["name"], numbers(&light["value"]), light["unit"].as_str().unwrap_or_default());
+        println!(
+            "  {} light {}: {} {}",
+            light["kind"].as_str().unwrap_or_default(),
+            light["name"],
+            numbers(&light["value"]),
+            light["unit"].as_str().unwrap_or_default()
+        );
     }
     for material in list("emissive_materials") {
-        println!("  emissive material {}: {} {}", material["name"], numbers(&material["value"]), material["unit"].as_str().unwrap_or_default());
+        println!(
+            "  emissive material {}: {} {}",
+            material["name"],
+            numbers(&material["value"]),
+            material["unit"].as_str().unwrap_or_default()
+        );
     }
     if !list("variants").is_empty() {
         println!("  variants: {}", list("variants").iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "));
@@ -139,6 +162,8 @@ fn print(info: &Value) {
 }
 
 fn numbers(value: &Value) -> String {
-    let parts = value.as_array().map(|list| list.iter().filter_map(Value::as_f64).map(|v| format!("{v:.4}")).collect::<Vec<_>>());
+    let parts = value
+        .as_array()
+        .map(|list| list.iter().filter_map(Value::as_f64).map(|v| format!("{v:.4}")).collect::<Vec<_>>());
     parts.map(|parts| format!("({})", parts.join(", "))).unwrap_or_default()
 }

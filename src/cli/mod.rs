@@ -64,9 +64,11 @@ mod scene {
 
     pub fn args() -> [Arg; 3] {
         [
-            Arg::new("scene").value_name("SCENE").required(true).value_parser(value_parser!(PathBuf)).help(
-                "The scene: .gltf or .glb",
-            ),
+            Arg::new("scene")
+                .value_name("SCENE")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("The scene: .gltf or .glb"),
             Arg::new("variant").long("variant").value_name("NAME").help("Material variant of the file to use"),
             Arg::new("light-units")
                 .long("light-units")

@@ -1,13 +1,14 @@
 //! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::SystemTime;
 
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use penumbra::error::Warnings;
-use penumbra::output::{self, Metadata};
+use penumbra::film::SampleId;
+use penumbra::output::{self, Metadata, exr, png};
 use penumbra::scene::{View, prepare};
 use penumbra::settings::{SETTINGS, Settings};
 
@@ -21,28 +22,50 @@ pub fn command() -> Command {
         .args(scene::args())
         .arg(path("output").short('o').value_name("OUT.exr").required(true).help("The EXR file to write"))
         .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
-        .arg(Arg::new("camera").long("camera").value_name("NAME|PATH").help("Camera to look through; the first unless set"))
         .arg(
-            Arg::new("size").long("size").value_name("WxH").value_parser(parse_size).help(
-                "Size of the picture in pixels; 960 across and the camera's own aspect unless set",
-            ),
+            Arg::new("camera")
+                .long("camera")
+                .value_name("NAME|PATH")
+                .help("Camera to look through; the first unless set"),
         )
         .arg(
-            Arg::new("frame").long("frame").value_name("F").value_parser(value_parser!(f64)).allow_negative_numbers(true)
+            Arg::new("size")
+                .long("size")
+                .value_name("WxH")
+                .value_parser(parse_size)
+                .help("Size of the picture in pixels; 960 across and the camera's own aspect unless set"),
+        )
+        .arg(
+            Arg::new("frame")
+                .long("frame")
+                .value_name("F")
+                .value_parser(value_parser!(f64))
+                .allow_negative_numbers(true)
                 .help("Evaluate animation at this frame, 24 per second; the file's pose at rest unless set"),
         )
         .arg(
-            Arg::new("frames").long("frames").value_name("A-B[xSTEP]").value_parser(parse_frames).conflicts_with("frame")
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B[xSTEP]")
+                .value_parser(parse_frames)
+                .conflicts_with("frame")
                 .help("Render several frames; #### in file names, or the end of the stem, becomes the number"),
         )
         .args(environment::args())
         .arg(
-            Arg::new("progress").long("progress").value_name("KIND").value_parser(["bar", "json", "none"])
-                .default_value("bar").help("How progress is told on stderr; the bar only on a terminal"),
+            Arg::new("progress")
+                .long("progress")
+                .value_name("KIND")
+                .value_parser(["bar", "json", "none"])
+                .default_value("bar")
+                .help("How progress is told on stderr; the bar only on a terminal"),
         )
         .arg(Arg::new("strict").long("strict").action(ArgAction::SetTrue).help("Take warnings for errors"))
         .arg(
-            Arg::new("debug-sample").long("debug-sample").value_name("X,Y,I").value_parser(parse_sample)
+            Arg::new("debug-sample")
+                .long("debug-sample")
+                .value_name("X,Y,I")
+                .value_parser(parse_sample)
                 .help("Trace sample I of pixel (X, Y) alone and print what it gave; writes nothing"),
         );
     SETTINGS.iter().fold(command, |command, def| {
@@ -102,10 +125,8 @@ fn render_frame(
         output::check_writable(path)?;
     }
 
-    let start = Instant::now();
     let (mut desc, mut warnings) = scene::load(args, frame)?;
     environment::apply(args, &mut desc)?;
-    let import_time = start.elapsed();
     let view = View { camera: args.get_one("camera").cloned(), size: args.get_one("size").copied() };
     let prepared = prepare(&desc, &view, settings)?;
     drop(desc);
@@ -115,7 +136,7 @@ fn render_frame(
         bail!("--strict: {} warnings about {}", warnings.len(), scene::path(args).display());
     }
     let scene = &prepared.scene;
-    if let Some(&[x, y, index]) = args.get_one("debug-sample") {
+    if let Some(&[x, y, index]) = args.get_one::<[u64; 3]>("debug-sample") {
         return debug_sample(scene, settings, x, y, index);
     }
     if interrupted() {
@@ -127,36 +148,58 @@ fn render_frame(
     reporter.finish();
     let rendered = rendered?;
     let film = &rendered.film;
-    if let Some(bad) = film.first_non_finite() {
-        let [x, y, index] = bad;
-        let what = format!("{} samples were not finite and left out; the first: --debug-sample {x},{y},{index}", film.non_finite());
+    let bad = film.non_finite();
+    if let Some(SampleId { x, y, index }) = bad.first {
+        let what =
+            format!("{} samples were not finite and left out; the first: --debug-sample {x},{y},{index}", bad.count);
         warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
         eprintln!("warning: {what}");
     }
+    let spp = film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()));
     let metadata = Metadata {
         scene: scene::path(args).display().to_string(),
         camera: prepared.camera.to_string(),
         frame,
-        spp: film.mean_sample_count(),
-        seconds: [import_time, prepared.build_time, rendered.elapsed].map(|t| t.as_secs_f64()),
-        non_finite: film.non_finite(),
+        samples: spp,
+        seed: settings.seed,
+        seconds: rendered.elapsed.as_secs_f64(),
+        date: Some(SystemTime::now()),
+        non_finite: bad.count,
+        non_finite_first: bad.first,
         warnings: warnings.iter().map(ToString::to_string).collect(),
-        settings: SETTINGS.iter().map(|def| (def.name, def.get(settings))).collect(),
-        manifests: scene.ids.names.clone(),
+        settings: SETTINGS.iter().map(|def| (def.name.to_owned(), def.get(settings))).collect(),
+        manifests: scene.ids.manifests(),
+        ..Metadata::default()
     };
     let picture = film.develop();
-    output::exr::write(&out, &picture, &metadata)?;
+    let saved = save(&out, &picture, &metadata, &exr::Options { half: settings.half, ..exr::Options::default() })?;
     if let Some(preview) = &preview {
-        output::png::write(preview, &picture).context("the EXR is written, the preview is not")?;
+        let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
+        png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
     }
-    let spp = film.mean_sample_count();
     let seconds = clock(rendered.elapsed.as_secs_f64());
     if rendered.interrupted {
-        eprintln!("interrupted at {spp:.1} samples per pixel: saved {}", out.display());
+        eprintln!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display());
         return Ok(Outcome::Interrupted);
     }
     eprintln!("{}: {}x{}, {spp:.0} spp, {seconds}", out.display(), scene.size[0], scene.size[1]);
     Ok(Outcome::Done)
+}
+
+/// Writes the picture to `out`, or where that fails (a full disk, a folder that went away) to the
+/// system's temporary folder, so that no render is lost; returns where it is.
+fn save(
+    out: &Path,
+    picture: &penumbra::film::Picture,
+    metadata: &Metadata,
+    options: &exr::Options,
+) -> anyhow::Result<PathBuf> {
+    let Err(error) = exr::write(out, picture, metadata, options) else { return Ok(out.to_owned()) };
+    let rescue = std::env::temp_dir().join(out.file_name().unwrap_or_default());
+    let rescued = rescue != out && !rescue.exists() && exr::write(&rescue, picture, metadata, options).is_ok();
+    let fate =
+        if rescued { format!("the render is saved as {}", rescue.display()) } else { "the render is lost".into() };
+    Err(anyhow::Error::from(error).context(fate))
 }
 
 fn tell(warnings: &Warnings) {

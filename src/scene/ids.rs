@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::desc::{MaterialDesc, SceneDesc};
-use crate::film::cryptomatte::id_from_name;
+use crate::film::cryptomatte::{CryptoKind, Manifest, id_from_name};
 
 /// Identity of one object.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +32,8 @@ pub struct Ids {
     pub objects: Vec<ObjectId>,
     /// One for each material.
     pub materials: Vec<MaterialId>,
-    /// Distinct names of objects, materials and assets, for the Cryptomatte manifests.
-    pub names: [Vec<Arc<str>>; 3],
+    /// Distinct names of objects, materials and assets.
+    names: [Vec<Arc<str>>; 3],
 }
 
 impl Ids {
@@ -69,5 +69,11 @@ impl Ids {
             list.dedup();
         }
         Self { objects, materials, names }
+    }
+
+    /// The names behind the ids, for the file's header.
+    pub fn manifests(&self) -> Vec<Manifest> {
+        let names = |i: usize| self.names[i].iter().map(ToString::to_string).collect();
+        CryptoKind::ALL.into_iter().enumerate().map(|(i, kind)| Manifest { kind, names: names(i) }).collect()
     }
 }
