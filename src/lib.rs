@@ -6,3 +6,4 @@ pub mod film;
 pub mod import;
 pub mod math;
 pub mod output;
+pub mod texture;
