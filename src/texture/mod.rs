@@ -1,0 +1,12 @@
+//! Images looked up along rays: mip pyramids in the stored size, filtered by the ray's footprint.
+
+mod image;
+mod lookup;
+mod pyramid;
+mod srgb;
+mod texel;
+mod transform;
+
+pub use image::Image;
+pub use lookup::Texture;
+pub use transform::UvTransform;
