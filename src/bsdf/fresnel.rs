@@ -3,7 +3,7 @@
 //! Christopher Kulla and Alejandro Conty, *Revisiting Physically Based Shading at Imageworks*,
 //! SIGGRAPH course 2017, for the averages over the hemisphere.
 
-use crate::math::{Rgb, safe_sqrt, sqr};
+use crate::math::{Rgb, Vec3, sqr};
 
 /// Reflectance of a dielectric by Fresnel's equations. `cos` ≥ 0 is that of the incident angle and
 /// `eta` the index beyond the interface over the index before it; 1 for total internal reflection.
@@ -42,14 +42,21 @@ pub(super) struct Dielectric {
     pub eta: f32,
     pub f0: Rgb,
     pub f90: f32,
+    /// Reflectance at normal incidence without tint, and one over what is left to 1.
+    real_f0: f32,
+    scale: f32,
 }
 
 impl Dielectric {
+    pub fn new(eta: f32, f0: Rgb, f90: f32) -> Self {
+        let real_f0 = f0_from_eta(eta);
+        Self { eta, f0, f90, real_f0, scale: 1.0 / (1.0 - real_f0) }
+    }
+
     /// How far between normal and grazing reflectance, 0 to 1.
     #[inline]
     pub fn blend(&self, cos: f32) -> f32 {
-        let f0 = f0_from_eta(self.eta);
-        ((fresnel_dielectric(cos, self.eta) - f0) / (1.0 - f0)).clamp(0.0, 1.0)
+        ((fresnel_dielectric(cos, self.eta) - self.real_f0) * self.scale).clamp(0.0, 1.0)
     }
 
     #[inline]
@@ -64,8 +71,7 @@ impl Dielectric {
 
     /// Mean over the hemisphere.
     pub fn average(&self) -> Rgb {
-        let f0 = f0_from_eta(self.eta);
-        self.at_blend(((average_dielectric(self.eta) - f0) / (1.0 - f0)).clamp(0.0, 1.0))
+        self.at_blend(((average_dielectric(self.eta) - self.real_f0) * self.scale).clamp(0.0, 1.0))
     }
 }
 
@@ -97,9 +103,9 @@ pub(super) fn schlick(cos: f32) -> f32 {
 /// `wo` refracted at the normal `h`, wo·h ≥ 0; `None` for total internal reflection. `eta` as in
 /// [`fresnel_dielectric`].
 #[inline]
-pub(super) fn refract(wo: crate::math::Vec3, h: crate::math::Vec3, eta: f32) -> Option<crate::math::Vec3> {
+pub(super) fn refract(wo: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let cos = wo.dot(h);
     let inverse = 1.0 / eta;
     let cos_t_squared = 1.0 - inverse * inverse * (1.0 - cos * cos);
-    (cos_t_squared > 0.0).then(|| (h * (inverse * cos - safe_sqrt(cos_t_squared)) - wo * inverse).normalize())
+    (cos_t_squared > 0.0).then(|| (h * (inverse * cos - cos_t_squared.sqrt()) - wo * inverse).normalize())
 }

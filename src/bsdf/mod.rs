@@ -9,13 +9,17 @@ mod fresnel;
 mod ggx;
 mod lambert;
 mod principled;
+#[cfg(test)]
+mod quadrature;
 mod reflection;
 mod refraction;
 mod response;
 mod surface;
 mod thin;
+mod view;
 
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
-pub use principled::{Bsdf, View};
+pub use principled::Bsdf;
 pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
 pub use surface::Surface;
+pub use view::View;

@@ -27,6 +27,12 @@ pub(super) fn pdf(ggx: Ggx, wo: Vec3, h: Vec3) -> f32 {
     ggx.pdf_bounded(wo, h)
 }
 
+/// Density of reflecting at a visible normal, whether upwards or not.
+#[inline]
+pub(super) fn pdf_visible(ggx: Ggx, wo: Vec3, h: Vec3) -> f32 {
+    0.5 * ggx.d(h) / (wo.z + ggx.slant(wo))
+}
+
 /// A reflected direction; `None` where it points into the surface.
 #[inline]
 pub(super) fn sample(ggx: Ggx, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {

@@ -40,13 +40,13 @@ impl Distribution2d {
         let mut texels = vec![0; (width + 1) * height];
         let mut row_sums = vec![0.0; height];
         let mut row = vec![0.0; width];
-        for y in 0..height {
+        for (y, row_sum) in row_sums.iter_mut().enumerate() {
             for (x, slot) in row.iter_mut().enumerate() {
                 let w = weight(x, y);
                 *slot = if w.is_finite() && w > 0.0 { w } else { 0.0 };
             }
             let range = y * (width + 1)..(y + 1) * (width + 1);
-            row_sums[y] = accumulate(&row, &mut texels[range]);
+            *row_sum = accumulate(&row, &mut texels[range]);
         }
         let mut rows = vec![0; height + 1];
         (accumulate(&row_sums, &mut rows) > 0.0).then_some(Self { width, height, rows, texels })
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn density_follows_the_weights() {
-        let weight = |x: usize, y: usize| if (x + y) % 5 == 0 { 0.0 } else { (1 + x * y) as f64 };
+        let weight = |x: usize, y: usize| if (x + y).is_multiple_of(5) { 0.0 } else { (1 + x * y) as f64 };
         let d = Distribution2d::new(37, 19, weight).unwrap();
         let total: f64 = (0..19).flat_map(|y| (0..37).map(move |x| weight(x, y))).sum();
         assert!((integral(&d) - 1.0).abs() < 1e-6);
