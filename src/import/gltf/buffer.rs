@@ -41,7 +41,11 @@ impl<'a> Buffers<'a> {
             data.push(bytes);
         }
         let total_bytes = data.iter().flatten().map(|bytes| bytes.len()).sum();
-        let buffers = Self { data, decoded: Vec::new(), total_bytes };
+        let mut buffers = Self { data, decoded: Vec::new(), total_bytes };
+        if root.buffer_views.iter().any(|view| view.extensions.meshopt.is_some()) {
+            buffers.decoded = super::meshopt::decode_views(root, &buffers, place)?;
+            buffers.total_bytes += buffers.decoded.iter().flatten().map(Vec::len).sum::<usize>();
+        }
         Ok(buffers)
     }
 

@@ -29,6 +29,9 @@ const SUPPORTED: &[&str] = &[
     "KHR_xmp_json_ld",
 ];
 
+/// Extensions that are read where the build has their decoder.
+const MESHOPT: &[&str] = &["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
 /// Optional extensions that change what is seen, so that their absence is told; without an entry
 /// here an unknown optional extension is ignored.
 const VISIBLE: &[(&str, &str)] = &[
@@ -95,7 +98,7 @@ fn check_head(version: &str, min_version: Option<&str>, required: &[String], pla
 }
 
 fn is_supported(name: &str) -> bool {
-    SUPPORTED.contains(&name)
+    SUPPORTED.contains(&name) || (cfg!(feature = "meshopt") && MESHOPT.contains(&name))
 }
 
 /// How messages name an element of the file: its kind, and its name or else its index.

@@ -26,7 +26,7 @@ pub(super) fn kind(light: &Light, units: LightUnits) -> Result<LightKind, String
         "point" => Ok(LightKind::Point { intensity: scaled(radial), range }),
         "spot" => {
             let outer = light.spot.outer_cone_angle;
-            if !(outer > 0.0) {
+            if outer.is_nan() || outer <= 0.0 {
                 return Err(format!("a spot light with an outer cone of {outer} radians emits nothing"));
             }
             let outer = outer.min(FRAC_PI_2);
@@ -51,7 +51,7 @@ mod tests {
     fn each_of_blenders_modes_comes_back_to_watts() {
         let expected = 100.0 / (4.0 * PI);
         for (units, written, sun) in [
-            (LightUnits::Spec, 5435.141_304_25, 2049.0),
+            (LightUnits::Spec, 5_435.141_306_588, 2049.0),
             (LightUnits::Compat, 7.957_747_154_6, 3.0),
             (LightUnits::Raw, 100.0, 3.0),
         ] {

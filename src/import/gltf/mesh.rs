@@ -3,7 +3,7 @@
 use super::accessor::Reader;
 use super::deform::{self, Influences, SkinPose};
 use super::document::label;
-use super::json::{Mesh, Primitive};
+use super::json::Primitive;
 use super::tangents;
 use super::topology;
 use crate::desc::{Attribute, MeshDesc};
@@ -54,7 +54,7 @@ pub(super) fn build(
     }
     let invalid = |what: String| Error::invalid(&place, what);
     let Some(mut geometry) = read(reader, primitive, &place, warnings).map_err(invalid)? else { return Ok(None) };
-    deform(reader, mesh, primitive, job, &mut geometry, &place, warnings).map_err(invalid)?;
+    deform(reader, primitive, job, &mut geometry, &place, warnings).map_err(invalid)?;
     clean(&mut geometry, &place, warnings);
     if geometry.triangles.is_empty() {
         warnings.push(&place, "no triangle has area; the primitive is left out");
@@ -103,7 +103,7 @@ fn read(
         Some(accessor) => named("indices", reader.integers::<1>(accessor))?.into_flattened(),
         None => (0..points.len() as u32).collect(),
     };
-    if primitive.mode == 4 && indices.len() % 3 != 0 {
+    if primitive.mode == 4 && !indices.len().is_multiple_of(3) {
         let what = format!("{} indices are no multiple of three; the last ones are left out", indices.len());
         warnings.push(place, what);
     }
@@ -142,14 +142,12 @@ fn read_colors(reader: Reader<'_>, accessor: usize) -> Result<Vec<[f32; 4]>, Str
 /// Applies morph targets, then the skin.
 fn deform(
     reader: Reader<'_>,
-    mesh: &Mesh,
     primitive: &Primitive,
     job: &Job<'_>,
     geometry: &mut Geometry,
     place: &Place,
     warnings: &mut Warnings,
 ) -> Result<(), String> {
-    let _ = mesh;
     for (target, &weight) in primitive.targets.iter().zip(job.weights) {
         if weight == 0.0 {
             continue;

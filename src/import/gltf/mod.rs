@@ -8,6 +8,7 @@
 //! material plus 1 (0 for glTF's default material): glTF has no numbers for these passes.
 
 mod accessor;
+mod animation;
 mod buffer;
 mod camera;
 mod container;
@@ -18,7 +19,9 @@ mod json;
 mod light;
 mod material;
 mod mesh;
+mod meshopt;
 mod node;
+mod sampler;
 mod scene;
 mod tangents;
 mod texture;
@@ -57,5 +60,12 @@ pub fn from_bytes(
     let root = document::parse(container.json, place, warnings)?;
     let buffers = buffer::Buffers::load(&root, container.bin, base_dir, place)?;
     let reader = accessor::Reader { root: &root, buffers: &buffers };
+    let posed = match options.frame {
+        Some(frame) if !root.animations.is_empty() => {
+            Some(animation::pose(container.json, reader, frame / options.fps, place, warnings)?)
+        }
+        _ => None,
+    };
+    let reader = accessor::Reader { root: posed.as_ref().unwrap_or(&root), buffers: &buffers };
     scene::Builder { reader, base_dir, place, options, file_size: bytes.len() }.build(warnings)
 }
