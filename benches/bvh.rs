@@ -217,7 +217,7 @@ fn compare(set: &RaySet, ours: &[Bvh], theirs: Option<&EmbreeScene>, rounds: usi
     println!();
 }
 
-/// Rays for which one finds a hit and the other none, and those whose distances differ by 1e-4.
+/// Rays for which one finds a hit and the other none, and those whose distances differ by more than rounding.
 fn disagreements(set: &RaySet, ours: &Bvh, theirs: &EmbreeScene) -> (usize, usize) {
     let (mut presence, mut distance) = (0, 0);
     for ray in &set.rays {
@@ -226,7 +226,10 @@ fn disagreements(set: &RaySet, ours: &Bvh, theirs: &EmbreeScene) -> (usize, usiz
             continue;
         }
         match (ours.closest_hit(ray, u32::MAX).map(|h| h.t), theirs.closest(ray)) {
-            (Some(a), Some(b)) => distance += usize::from((a - b).abs() > 1e-4 * b.max(1e-3)),
+            (Some(a), Some(b)) => {
+                let rounding = 1e-4 * b + 1e-6 * ray.o.abs().max_element();
+                distance += usize::from((a - b).abs() > rounding);
+            }
             (a, b) => presence += usize::from(a.is_some() != b.is_some()),
         }
     }

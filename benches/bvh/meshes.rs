@@ -29,6 +29,8 @@ pub struct Scene {
     pub light: [Vec3; 3],
     /// Length of the short rays.
     pub ao_distance: f32,
+    /// Side of the camera's picture in pixels.
+    pub side: usize,
 }
 
 impl Scene {
@@ -109,6 +111,7 @@ fn sphere1m() -> Scene {
         target: Vec3::ZERO,
         light: [Vec3::new(-0.5, -0.5, 2.45), Vec3::X, Vec3::Y],
         ao_distance: 0.5,
+        side: 512,
     }
 }
 
@@ -135,6 +138,7 @@ fn stadium() -> Scene {
         target: Vec3::new(0.0, 0.0, 0.65),
         light: [Vec3::new(-10.0, -10.0, 30.0), Vec3::X * 20.0, Vec3::Y * 20.0],
         ao_distance: 1.0,
+        side: 512,
     }
 }
 
@@ -158,6 +162,7 @@ fn inst10m() -> Scene {
         target: Vec3::new(0.0, 0.0, 8.0),
         light: [Vec3::new(-5.0, -5.0, 40.0), Vec3::X * 10.0, Vec3::Y * 10.0],
         ao_distance: 2.0,
+        side: 512,
     }
 }
 
@@ -179,5 +184,6 @@ fn thin() -> Scene {
         target: Vec3::ZERO,
         light: [Vec3::new(-1.0, -1.0, 6.0), Vec3::X * 2.0, Vec3::Y * 2.0],
         ao_distance: 0.5,
+        side: 64,
     }
 }

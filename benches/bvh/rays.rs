@@ -16,14 +16,10 @@ pub struct RaySet {
     pub rays: Vec<Ray>,
 }
 
-/// Rays of each set.
-const COUNT: usize = 1 << 18;
-/// Side of the camera's picture.
-const SIDE: usize = 512;
-
-/// Primary, diffuse, short, shadow and shuffled diffuse rays; the nearest hits come from `bvh`.
+/// As many primary, diffuse, short, shadow and shuffled diffuse rays as the camera has pixels; the nearest hits come from `bvh`.
 pub fn ray_sets(scene: &Scene, bvh: &Bvh) -> Vec<RaySet> {
     let primary = primary(scene);
+    let count = primary.len();
     let points: Vec<(Vec3, Vec3)> = primary
         .iter()
         .filter_map(|ray| bvh.closest_hit(ray, u32::MAX).map(|hit| surface_point(scene, ray, &hit)))
@@ -35,7 +31,7 @@ pub fn ray_sets(scene: &Scene, bvh: &Bvh) -> Vec<RaySet> {
         if d.length_squared() > 1e-6 { d.normalize() } else { n }
     };
     // Where the camera sees little, its points serve several times, still in order.
-    let origins: Vec<_> = (0..COUNT).map(|i| points[i * points.len() / COUNT]).collect();
+    let origins: Vec<_> = (0..count).map(|i| points[i * points.len() / count]).collect();
     let diffuse: Vec<_> = origins.iter().map(|&(p, n)| Ray::new(p, cosine(n))).collect();
     let ao = origins.iter().map(|&(p, n)| Ray { t_max: scene.ao_distance, ..Ray::new(p, cosine(n)) }).collect();
     let mut rng = Rng::new(6);
@@ -49,7 +45,7 @@ pub fn ray_sets(scene: &Scene, bvh: &Bvh) -> Vec<RaySet> {
         .collect();
     let mut shuffled = diffuse.clone();
     for i in (1..shuffled.len()).rev() {
-        shuffled.swap(i, (u64::from(rng.bits()) * (i as u64 + 1) >> 32) as usize);
+        shuffled.swap(i, ((u64::from(rng.bits()) * (i as u64 + 1)) >> 32) as usize);
     }
     vec![
         RaySet { name: "primary", any: false, rays: primary },
@@ -64,9 +60,10 @@ fn primary(scene: &Scene) -> Vec<Ray> {
     let forward = (scene.target - scene.eye).normalize();
     let right = forward.cross(Vec3::Z).normalize();
     let up = right.cross(forward);
-    let at = |i: usize| (i as f32 + 0.5) / SIDE as f32 - 0.5;
-    let ray = |i: usize| Ray::new(scene.eye, (forward + right * at(i % SIDE) - up * at(i / SIDE)).normalize());
-    (0..SIDE * SIDE).map(ray).collect()
+    let side = scene.side;
+    let at = |i: usize| (i as f32 + 0.5) / side as f32 - 0.5;
+    let ray = |i: usize| Ray::new(scene.eye, (forward + right * at(i % side) - up * at(i / side)).normalize());
+    (0..side * side).map(ray).collect()
 }
 
 /// The point hit, a little above the surface, and the normal on the ray's side.

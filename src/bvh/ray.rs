@@ -2,11 +2,16 @@
 //!
 //! Sven Woop, Carsten Benthin, Ingo Wald: *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013.
 
+use super::node::WIDTH;
 use crate::math::{Ray, Vec3};
 
 /// Widening of the slab test, relative in `t`: more than the rounding of two differences, two
 /// reciprocals and two products, and of the `t` that the triangle test returns.
 const SLACK: f32 = 1.0 / (1 << 20) as f32;
+
+/// Bytes from one row of [`super::node::Node::planes`] to the next; opposite planes lie at offsets
+/// that differ by an exclusive or with it.
+pub(super) const ROW: usize = size_of::<[f32; WIDTH]>();
 
 /// A ray in the space of the boxes and triangles that it is tested against.
 #[derive(Clone, Copy)]
@@ -19,10 +24,12 @@ pub(super) struct RaySetup {
     pub rcp_near: [f32; 3],
     /// `1 / d`, rounded toward a larger exit distance.
     pub rcp_far: [f32; 3],
-    /// Row of [`super::node::Node::planes`] that the ray enters through, by axis.
-    pub near_row: [usize; 3],
+    /// Where in [`super::node::Node::planes`] the planes begin that the ray enters through, by axis, in bytes.
+    pub near_planes: [usize; 3],
     /// The axes in the order x', y', z', where z' is the one along which the ray goes fastest.
     pub axes: [usize; 3],
+    /// The origin in that order.
+    pub permuted_o: [f32; 3],
     /// `d.x' / d.z'`, `d.y' / d.z'` and `1 / d.z'`.
     pub shear: [f32; 3],
 }
@@ -47,12 +54,13 @@ impl RaySetup {
             d,
             rcp_near: rcp.map(|r| r * (1.0 - SLACK)),
             rcp_far: rcp.map(|r| r * (1.0 + SLACK)),
-            near_row: [
-                usize::from(rcp[0].is_sign_negative()),
-                2 + usize::from(rcp[1].is_sign_negative()),
-                4 + usize::from(rcp[2].is_sign_negative()),
+            near_planes: [
+                usize::from(rcp[0].is_sign_negative()) * ROW,
+                (2 + usize::from(rcp[1].is_sign_negative())) * ROW,
+                (4 + usize::from(rcp[2].is_sign_negative())) * ROW,
             ],
             axes: [x, y, z],
+            permuted_o: [o[x], o[y], o[z]],
             shear: [d[x] * rcp[z], d[y] * rcp[z], rcp[z]],
         }
     }

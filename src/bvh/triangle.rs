@@ -60,7 +60,7 @@ struct Candidates<F> {
 unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<Candidates<F>> {
     unsafe {
         let [x, y, z] = ray.axes;
-        let origin = [F::splat(ray.o[x]), F::splat(ray.o[y]), F::splat(ray.o[z])];
+        let origin = ray.permuted_o.map(|v| F::splat(v));
         let shear = [F::splat(ray.shear[0]), F::splat(ray.shear[1])];
         let to_ray = |vertex: &[[f32; BLOCK]; 3]| {
             let pz = F::load(vertex.get_unchecked(z)).sub(origin[2]);
