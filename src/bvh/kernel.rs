@@ -3,8 +3,8 @@
 
 use super::Hit;
 use super::isa::Isa;
-use super::ray::normalized;
-use super::simd::{self, Simd};
+use super::ray::{is_plain, rescaled};
+use super::simd;
 use super::top::Tree;
 use super::triangle::Best;
 use crate::math::Ray;
@@ -12,41 +12,22 @@ use crate::math::Ray;
 /// The queries for one instruction set.
 pub(super) struct Kernel {
     pub isa: Isa,
-    closest: unsafe fn(&Tree, &Ray, u32) -> Option<Hit>,
+    closest: unsafe fn(&Tree, &Ray, u32) -> Best,
     any: unsafe fn(&Tree, &Ray, u32) -> bool,
-}
-
-/// # Safety
-/// The instruction set is available.
-#[inline(always)]
-unsafe fn closest<S: Simd>(tree: &Tree, ray: &Ray, mask: u32) -> Option<Hit> {
-    let (ray, power) = normalized(ray)?;
-    // SAFETY: by contract.
-    let best = unsafe { tree.closest::<S>(&ray, mask) };
-    let Best { t, u, v, instance, triangle } = best;
-    (triangle != Best::NONE).then_some(Hit { t: t * power, u, v, instance, triangle })
-}
-
-/// # Safety
-/// The instruction set is available.
-#[inline(always)]
-unsafe fn any<S: Simd>(tree: &Tree, ray: &Ray, mask: u32) -> bool {
-    // SAFETY: by contract.
-    normalized(ray).is_some_and(|(ray, _)| unsafe { tree.any::<S>(&ray, mask) })
 }
 
 /// Compiles both queries for an instruction set.
 macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         $(#[target_feature(enable = $features)])?
-        unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u32) -> Option<Hit> {
+        unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u32) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { closest::<$simd>(tree, ray, mask) }
+            unsafe { tree.closest::<$simd>(ray, mask) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u32) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { any::<$simd>(tree, ray, mask) }
+            unsafe { tree.any::<$simd>(ray, mask) }
         }
         static $name: Kernel = Kernel { isa: $isa, closest: closest_hit, any: any_hit };
         &$name
@@ -71,15 +52,23 @@ impl Kernel {
     }
 
     /// See [`super::Bvh::closest_hit`].
-    #[inline(always)]
+    #[inline]
     pub fn closest(&self, tree: &Tree, ray: &Ray, mask: u32) -> Option<Hit> {
+        if !is_plain(ray) {
+            let (scaled, power) = rescaled(ray)?;
+            return self.closest(tree, &scaled, mask).map(|hit| Hit { t: hit.t * power, ..hit });
+        }
         // SAFETY: only available kernels are handed out.
-        unsafe { (self.closest)(tree, ray, mask) }
+        let Best { t, u, v, instance, triangle } = unsafe { (self.closest)(tree, ray, mask) };
+        (triangle != Best::NONE).then_some(Hit { t, u, v, instance, triangle })
     }
 
     /// See [`super::Bvh::any_hit`].
-    #[inline(always)]
+    #[inline]
     pub fn any(&self, tree: &Tree, ray: &Ray, mask: u32) -> bool {
+        if !is_plain(ray) {
+            return rescaled(ray).is_some_and(|(scaled, _)| self.any(tree, &scaled, mask));
+        }
         // SAFETY: as above.
         unsafe { (self.any)(tree, ray, mask) }
     }

@@ -2,11 +2,16 @@
 //!
 //! Sven Woop, Carsten Benthin, Ingo Wald: *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013.
 
+use super::node::WIDTH;
 use crate::math::{Ray, Vec3};
 
 /// Widening of the slab test, relative in `t`: more than the rounding of two differences, two
 /// reciprocals and two products, and of the `t` that the triangle test returns.
 const SLACK: f32 = 1.0 / (1 << 20) as f32;
+
+/// Bytes from one row of [`super::node::Node::planes`] to the next; opposite planes lie at offsets
+/// that differ by an exclusive or with it.
+pub(super) const ROW: usize = size_of::<[f32; WIDTH]>();
 
 /// A ray in the space of the boxes and triangles that it is tested against.
 #[derive(Clone, Copy)]
@@ -19,10 +24,12 @@ pub(super) struct RaySetup {
     pub rcp_near: [f32; 3],
     /// `1 / d`, rounded toward a larger exit distance.
     pub rcp_far: [f32; 3],
-    /// Row of [`super::node::Node::planes`] that the ray enters through, by axis.
-    pub near_row: [usize; 3],
+    /// Where in [`super::node::Node::planes`] the planes begin that the ray enters through, by axis, in bytes.
+    pub near_planes: [usize; 3],
     /// The axes in the order x', y', z', where z' is the one along which the ray goes fastest.
     pub axes: [usize; 3],
+    /// The origin in that order.
+    pub permuted_o: [f32; 3],
     /// `d.x' / d.z'`, `d.y' / d.z'` and `1 / d.z'`.
     pub shear: [f32; 3],
 }
@@ -47,32 +54,35 @@ impl RaySetup {
             d,
             rcp_near: rcp.map(|r| r * (1.0 - SLACK)),
             rcp_far: rcp.map(|r| r * (1.0 + SLACK)),
-            near_row: [
-                usize::from(rcp[0].is_sign_negative()),
-                2 + usize::from(rcp[1].is_sign_negative()),
-                4 + usize::from(rcp[2].is_sign_negative()),
+            near_planes: [
+                usize::from(rcp[0].is_sign_negative()) * ROW,
+                (2 + usize::from(rcp[1].is_sign_negative())) * ROW,
+                (4 + usize::from(rcp[2].is_sign_negative())) * ROW,
             ],
             axes: [x, y, z],
+            permuted_o: [o[x], o[y], o[z]],
             shear: [d[x] * rcp[z], d[y] * rcp[z], rcp[z]],
         }
     }
 }
 
+/// True for nearly all rays: finite, and with a direction that traversal can take as it is. The
+/// others go through [`rescaled`].
+#[inline(always)]
+pub(super) fn is_plain(ray: &Ray) -> bool {
+    let (o, d) = (ray.o.abs(), ray.d.abs());
+    let longest = d.x.max(d.y).max(d.z);
+    // NaN and infinity make the sum fail.
+    let sum = (o.x + o.y + o.z) + (d.x + d.y + d.z);
+    (sum < f32::MAX) & (longest > 1e-6) & (longest < 1e6) & (ray.t_max > 0.0)
+}
+
 /// The ray with its direction brought near length 1 by a power of two, which changes no digit of
 /// any product, and that power: `t` of the result times the power is `t` of the ray. `None` for a
 /// ray that can hit nothing: not finite, without direction, or without length.
-#[inline(always)]
-pub(super) fn normalized(ray: &Ray) -> Option<(Ray, f32)> {
-    // NaN falls through the comparisons of the fast path.
-    let longest = ray.d.abs().max_element();
-    if longest > 1e-6 && longest < 1e6 && ray.o.is_finite() && ray.d.is_finite() && ray.t_max > 0.0 {
-        return Some((*ray, 1.0));
-    }
-    rescaled(ray)
-}
-
 #[cold]
-fn rescaled(ray: &Ray) -> Option<(Ray, f32)> {
+#[inline(never)]
+pub(super) fn rescaled(ray: &Ray) -> Option<(Ray, f32)> {
     let longest = ray.d.abs().max_element();
     if !(ray.o.is_finite() && ray.d.is_finite() && longest > 0.0 && ray.t_max > 0.0) {
         return None;
@@ -104,7 +114,8 @@ mod tests {
     fn extreme_directions_are_scaled_exactly() {
         for length in [1e-44_f32, 1e-30, 1e-10, 1.0, 1e10, 1e38] {
             let ray = Ray { o: Vec3::ONE, d: Vec3::new(0.0, -length, 0.25 * length), t_max: 3.0 };
-            let (scaled, power) = normalized(&ray).unwrap();
+            let (scaled, power) = rescaled(&ray).unwrap();
+            assert!(is_plain(&scaled));
             let longest = scaled.d.abs().max_element();
             assert!((1e-6..=1e6).contains(&longest), "{length}: {longest}");
             let back = f64::from(scaled.d.y) / f64::from(power);
@@ -114,9 +125,11 @@ mod tests {
             }
         }
         for bad in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
-            assert!(normalized(&Ray::new(Vec3::ZERO, bad)).is_none());
-            assert!(bad == Vec3::ZERO || normalized(&Ray::new(bad, Vec3::X)).is_none());
+            let (no_direction, nowhere) = (Ray::new(Vec3::ZERO, bad), Ray::new(bad, Vec3::X));
+            assert!(!is_plain(&no_direction) && rescaled(&no_direction).is_none());
+            assert!(bad == Vec3::ZERO || !is_plain(&nowhere) && rescaled(&nowhere).is_none());
         }
-        assert!(normalized(&Ray { o: Vec3::ZERO, d: Vec3::X, t_max: f32::NAN }).is_none());
+        let no_end = Ray { o: Vec3::ZERO, d: Vec3::X, t_max: f32::NAN };
+        assert!(!is_plain(&no_end) && rescaled(&no_end).is_none());
     }
 }

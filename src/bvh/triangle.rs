@@ -64,7 +64,7 @@ struct Candidates<F> {
 unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<Candidates<F>> {
     unsafe {
         let [x, y, z] = ray.axes;
-        let origin = [F::splat(ray.o[x]), F::splat(ray.o[y]), F::splat(ray.o[z])];
+        let origin = ray.permuted_o.map(|v| F::splat(v));
         let shear = [F::splat(ray.shear[0]), F::splat(ray.shear[1])];
         let vertex = |k: usize| {
             let vertex = &block.vertices[k];
@@ -92,7 +92,16 @@ unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<C
         let mut found = Candidates { inside: 0, t, u: v.mul(rcp), v: w.mul(rcp) };
         inside &= !det.eq(zero);
         if unsure != 0 {
-            inside = exact(unsure, inside, [a, b, c], ray.shear[2], &mut found);
+            let mut vertices = [[[0.0; BLOCK]; 3]; 3];
+            for (lanes, vertex) in vertices.iter_mut().zip([a, b, c]) {
+                lanes.iter_mut().zip(vertex).for_each(|(lanes, v)| v.store(lanes));
+            }
+            let (mut t, mut u, mut v) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+            found.t.store(&mut t);
+            found.u.store(&mut u);
+            found.v.store(&mut v);
+            inside = exact(unsure, inside, &vertices, ray.shear[2], [&mut t, &mut u, &mut v]);
+            (found.t, found.u, found.v) = (F::load(&t), F::load(&u), F::load(&v));
         }
         found.inside = inside & !on_plane;
         Some(found)
@@ -133,47 +142,26 @@ unsafe fn distance<F: Lanes<BLOCK>>(vertices: [[F; 3]; 3], origin: [F; 3], ray: 
 }
 
 /// Decides the lanes of `unsure` by exact products and returns the new `inside`.
-///
-/// # Safety
-/// As for [`Lanes`].
-#[inline(always)]
-unsafe fn exact<F: Lanes<BLOCK>>(
+#[cold]
+#[inline(never)]
+fn exact(
     unsure: u32,
     inside: u32,
-    vertices: [[F; 3]; 3],
+    vertices: &[[[f32; BLOCK]; 3]; 3],
     shear_z: f32,
-    found: &mut Candidates<F>,
+    [t, u, v]: [&mut [f32; BLOCK]; 3],
 ) -> u32 {
-    let mut lanes = [[[0.0; BLOCK]; 3]; 3];
-    let (mut t, mut u, mut v) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
-    unsafe {
-        for k in 0..3 {
-            for axis in 0..3 {
-                vertices[k][axis].store(&mut lanes[k][axis]);
-            }
-        }
-        found.t.store(&mut t);
-        found.u.store(&mut u);
-        found.v.store(&mut v);
-    }
     let mut inside = inside & !unsure;
     for i in (0..BLOCK).filter(|i| unsure >> i & 1 != 0) {
-        if let Some(hit) = exact_lane(lanes.map(|vertex| vertex.map(|axis| axis[i])), shear_z) {
+        if let Some(hit) = exact_lane(vertices.map(|vertex| vertex.map(|axis| axis[i])), shear_z) {
             [t[i], u[i], v[i]] = hit;
             inside |= 1 << i;
         }
-    }
-    unsafe {
-        found.t = F::load(&t);
-        found.u = F::load(&u);
-        found.v = F::load(&v);
     }
     inside
 }
 
 /// The test of one triangle with edge functions in `f64`, where products of `f32` are exact.
-#[cold]
-#[inline(never)]
 fn exact_lane(vertices: [[f32; 3]; 3], shear_z: f32) -> Option<[f32; 3]> {
     let [a, b, c] = vertices.map(|vertex| vertex.map(f64::from));
     let u = c[0] * b[1] - c[1] * b[0];
