@@ -47,7 +47,7 @@ def cloth(made, seats):
     n, m = 76, 62
     u, v = np.meshgrid(np.linspace(-0.31, 0.31, n), np.linspace(-0.30, 0.26, m))
     # A little too much cloth for its place: shallow waves leave it room to fold.
-    wave = 0.010 * np.sin(19 * u + 5 * v + 0.6) + 0.008 * np.sin(13 * v - 7 * u) + 0.007 * np.sin(31 * u * (1 + v))
+    wave = 0.008 * np.sin(15 * u + 4 * v + 0.6) + 0.005 * np.sin(9 * v - 7 * u) + 0.004 * np.sin(23 * u * (1 + v))
     z = 0.026 + np.abs(wave)
     a = math.radians(-17)
     x = u * math.cos(a) - v * math.sin(a) + 0.115
@@ -56,13 +56,13 @@ def cloth(made, seats):
     board = kit.link("board", kit.box("board", (2.2, 1.2, 0.05), made, 0.008), (0, 0.285, -0.025))
     mod = board.modifiers.new("Collision", "COLLISION")
     board.collision.thickness_outer = 0.003
-    board.collision.cloth_friction = 25.0
+    board.collision.cloth_friction = 8.0
     mod = sheet.modifiers.new("Cloth", "CLOTH")
     mod.settings.quality = 6
     mod.settings.mass = 0.15
     mod.settings.tension_stiffness = mod.settings.compression_stiffness = 18.0
     mod.settings.shear_stiffness = 6.0
-    mod.settings.bending_stiffness = 0.25
+    mod.settings.bending_stiffness = 1.2
     mod.settings.tension_damping = 8.0
     mod.settings.air_damping = 3.0
     mod.collision_settings.distance_min = 0.003
@@ -91,7 +91,7 @@ def cloth(made, seats):
 def surfaces(folder):
     """Materials by name, with their textures."""
     m = {}
-    color, height = tx.wood((512, 512), 3, (0.20, 0.11, 0.06), (0.42, 0.26, 0.15), (0.60, 0.41, 0.26))
+    color, height = tx.wood((512, 512), 3, (0.34, 0.20, 0.11), (0.60, 0.41, 0.25), (0.76, 0.58, 0.39))
     m["oak"] = kit.material("Oak", rough=0.42, image=tx.save(folder, "oak", color),
                             normal=tx.save(folder, "oak_normal", tx.normal_map(height, 0.5)), bump=0.7)
     color, height = tx.linen((256, 256), 5, 64, (0.84, 0.80, 0.72))
@@ -99,7 +99,7 @@ def surfaces(folder):
                               normal=tx.save(folder, "linen_normal", tx.normal_map(height, 0.55), 80))
     shade = tx.noise((256, 256), 2.4, seed=8)
     m["wall"] = kit.material("Plaster", rough=0.9, image=tx.save(folder, "plaster", tx.ramp(
-        0.5 + 0.16 * shade, (0, (0.25, 0.34, 0.35)), (1, (0.42, 0.50, 0.49)))))
+        0.5 + 0.16 * shade, (0, (0.36, 0.46, 0.46)), (1, (0.52, 0.60, 0.58)))))
     v = np.linspace(0, 1, 256)[:, None]
     streak = tx.noise((256, 256), 1.6, (1.0, 12.0), 11)
     blush = tx.step(-0.9, 1.1, tx.noise((256, 256), 3.0, seed=12) + 0.35 * streak)
@@ -133,8 +133,8 @@ def surfaces(folder):
     m["grape"] = kit.material("Grape", (0.085, 0.018, 0.055), 0.24, coat=0.35, coat_rough=0.25)
     m["wood"] = kit.material("Stem", (0.10, 0.055, 0.025), 0.8)
     m["leaf"] = kit.material("Leaf", (0.055, 0.16, 0.035), 0.42)
-    m["globe"] = kit.material("Globe", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.66, 0.36), strength=5.0)
-    m["pearl"] = kit.material("Pearl light", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.72, 0.42), strength=3.2)
+    m["globe"] = kit.material("Globe", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.66, 0.36), strength=2.6)
+    m["pearl"] = kit.material("Pearl light", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.72, 0.42), strength=3.0)
     return m
 
 
@@ -199,7 +199,7 @@ def fruit(m):
         thing = kit.link(f"Pear {i}", pear(f"pear {i}", m["pear"], 5 + i), (x, y, 0.036 if lying else 0.0), turn)
         top = kit.link(f"Pear stem {i}", twig, (0, 0, 0.094))
         top.parent = thing
-    for i, (x, y, z, turn) in enumerate([(-0.305, -0.085, 0.0, (6, -8, 10)), (0.300, -0.035, 0.001, (-10, 14, 80))]):
+    for i, (x, y, z, turn) in enumerate([(-0.305, -0.085, 0.0, (6, -8, 10)), (-0.385, -0.005, 0.0, (-10, 14, 80))]):
         thing = kit.link(f"Apple {i}", apple(f"apple {i}", m["apple"], 15 + i), (x, y, z), turn)
         top = kit.link(f"Apple stem {i}", twig, (0, 0, 0.064))
         top.parent = thing
@@ -230,12 +230,13 @@ def build(out, folder):
     m = surfaces(folder)
     kit.link("Table", kit.box("table", (2.2, 1.2, 0.05), m["oak"], 0.008, 0.9, segments=3), (0, 0.285, -0.025))
     kit.link("Wall", kit.grid("wall", [[(-3, 0.95, -1), (3, 0.95, -1)], [(-3, 0.95, 2.5), (3, 0.95, 2.5)]], m["wall"], (3, 1.75)))
+    kit.link("Apron", kit.box("apron", (2.1, 0.03, 0.5), m["oak"], 0.004, 0.9, 3), (0, -0.27, -0.3))
     vessels(m)
     fruit(m)
-    cloth(m["linen"], [(0.105, 0.02, 0.055), (0.02, -0.235, 0.01), (0.30, -0.035, 0.02), (0.28, -0.165, 0.05),
+    cloth(m["linen"], [(0.105, 0.02, 0.055), (0.02, -0.235, 0.01), (0.28, -0.165, 0.05),
                        (-0.075, -0.165, 0.04), (-0.165, -0.105, 0.04)])
-    kit.quad_light("Key", (-1.25, -0.55, 1.05), (0.0, 0.0, 0.08), (0.9, 0.9), (0.90, 0.96, 1.0), 11.0)
-    kit.quad_light("Warm lamp", (1.05, -0.12, 0.52), (0.05, 0.0, 0.05), (0.11, 0.11), (1.0, 0.50, 0.20), 85.0)
-    kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.35)
-    kit.camera((0.06, -1.62, 0.50), (0.015, 0.0, 0.083), 58)
+    kit.quad_light("Key", (-1.45, -0.35, 0.95), (0.0, 0.05, 0.08), (0.75, 0.75), (0.93, 0.97, 1.0), 30.0)
+    kit.quad_light("Warm lamp", (1.05, -0.12, 0.52), (0.05, 0.0, 0.05), (0.10, 0.10), (1.0, 0.50, 0.20), 190.0)
+    kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.6)
+    kit.camera((0.06, -1.62, 0.50), (0.005, 0.0, 0.094), 60)
     kit.export(out / "still_life.glb")
