@@ -119,7 +119,7 @@ def daisy(name, petals, petal_made, heart_made, stem_made, length, wide, droop, 
     path = [np.zeros(3), np.array([0.2 * lean[0], 0.2 * lean[1], 0.55 * tall]), top]
     rows = [[p + (math.cos(a) * 0.0028, math.sin(a) * 0.0028, 0) for a in (0, 2.09, 4.19, 6.283)] for p in path]
     parts = [(*sheet(rows), stem_made)]
-    tilt = np.array([[1, 0, 0.0], [0, math.cos(0.5), -math.sin(-0.5)], [0, math.sin(-0.5), math.cos(0.5)]])
+    tilt = np.array([[1, 0, 0.0], [0, math.cos(0.6), -math.sin(0.6)], [0, math.sin(0.6), math.cos(0.6)]])
     for k in range(petals):
         a = 2 * math.pi * (k + rng.uniform(-0.1, 0.1)) / petals
         d, s = np.array([math.cos(a), math.sin(a), 0]), np.array([-math.sin(a), math.cos(a), 0])
@@ -169,7 +169,7 @@ def tree(name, bark, foliage, seed=5):
         parts.append((*sheet([[p + r * (math.cos(q) * u + math.sin(q) * v) for q in ring] for p, r in ((np.asarray(a), ra), (b, rb))]), bark))
 
     fork = np.array([0.1, 0.0, 2.0])
-    limb((0, 0, -0.3), fork, 0.30, 0.20)
+    limb((0, 0, -0.3), fork, 0.22, 0.16)
     clumps = []
     for k in range(15):
         a, e = 2.4 * k, rng.uniform(-0.1, 1.35)
@@ -178,7 +178,7 @@ def tree(name, bark, foliage, seed=5):
         clumps.append((tip, rng.uniform(0.75, 1.15)))
     cards, faces = [], []
     for tip, size in clumps:
-        for _ in range(105):
+        for _ in range(135):
             n = rng.normal(size=3)
             n /= np.linalg.norm(n)
             c = tip + n * size * rng.uniform(0.55, 1.0) * (1, 1, 0.75)
@@ -187,7 +187,7 @@ def tree(name, bark, foliage, seed=5):
             u /= np.linalg.norm(u)
             v = np.cross(facing, u)
             v /= np.linalg.norm(v)
-            w = rng.uniform(0.09, 0.17)
+            w = rng.uniform(0.10, 0.19)
             i = len(cards)
             cards += [c - u * w, c - v * w * 0.6, c + u * w, c + v * w * 0.6]
             faces.append((i, i + 1, i + 2, i + 3))
@@ -222,23 +222,26 @@ def crowd(x, y, q, scale, lift=0.0):
 def meadow(m, crowds):
     """Grass, flowers and stones."""
     rng = np.random.default_rng(200)
-    for i, (count, tall, made) in enumerate([(6200, 0.26, "grass0"), (5600, 0.30, "grass1"), (3400, 0.36, "grass2")]):
+    for i, (count, tall, made) in enumerate([(6200, 0.21, "grass0"), (5600, 0.24, "grass1"), (3400, 0.30, "grass2")]):
         x, y, r = scatter(rng, count, 1.5, 95, 1.35)
         keep = np.ones(len(x), bool) if i < 2 else (np.sin(0.5 * x + 0.23 * y) + np.sin(0.31 * y - 0.2 * x) > -0.35)
         x, y, r = x[keep], y[keep], r[keep]
         size = rng.uniform(0.7, 1.15, len(x)) * (1.0 + 0.02 * r)
+        # Among the pinwheels the grass is kept short, so that their shadows lie on it.
+        off = np.abs(x - river(y)) - (2.6 + 0.055 * y)
+        size *= 0.45 + 0.55 * tx.step(-0.2, 2.2, off)
         wide = size * (1.0 + 0.045 * r)
         q = quaternions(rng.uniform(-0.8, 0.8, len(x)))
         crowds[f"Grass {i}"] = crowd(x, y, q, np.stack([wide, wide, size], 1))
         kit.link(f"Grass {i}", tuft(f"grass {i}", m[made], 210 + i, tall=tall))
-    daisies = daisy("daisy", 13, m["white"], m["yolk"], m["stem"], 0.034, 0.0075, 0.35, 0.30, 220)
-    poppies = daisy("poppy", 5, m["poppy"], m["dark"], m["stem"], 0.052, 0.036, 0.75, 0.38, 221)
+    daisies = daisy("daisy", 13, m["white"], m["yolk"], m["stem"], 0.036, 0.0085, 0.35, 0.29, 220)
+    poppies = daisy("poppy", 5, m["poppy"], m["dark"], m["stem"], 0.048, 0.036, 1.15, 0.34, 221)
     for name, data, count, f, bias in [("Daisies", daisies, 4200, 0.42, -0.1), ("Poppies", poppies, 2600, 0.33, 0.35)]:
         x, y, r = scatter(rng, count, 2.0, 45, 1.25)
         patch = np.sin(f * x + 1.3 + bias) + np.sin(1.3 * f * y - 0.4 * x + 9 * bias) + rng.normal(0, 0.45, len(x))
         keep = patch > bias
         x, y, r = x[keep], y[keep], r[keep]
-        q = quaternions(rng.uniform(-0.9, 0.9, len(x)), 0.0, rng.normal(0, 0.12, len(x)), rng.normal(0.06, 0.1, len(x)))
+        q = quaternions(rng.uniform(-0.9, 0.9, len(x)), 0.0, rng.normal(0, 0.28, len(x)), rng.normal(0.06, 0.2, len(x)))
         crowds[name] = crowd(x, y, q, rng.uniform(0.75, 1.3, len(x)) * (1 + 0.018 * r))
         kit.link(name, data)
     x, y, r = scatter(rng, 150, 3.0, 50, 1.0)
@@ -319,10 +322,11 @@ def build(out, folder):
     meadow(m, crowds)
     pinwheels(m, crowds)
     trees(m, crowds)
-    kit.sun("Sun", SUN, 7.5, (1.0, 0.70, 0.42), 0.53)
-    kit.camera((EYE[0], EYE[1], 1.62 + float(height(*EYE[:2]))), (0.2, 12.0, 1.15), 32)
-    sky.sky(out / "evening.hdr", SUN, zenith=(0.17, 0.29, 0.56), horizon=(0.80, 0.62, 0.50), glow=(1.5, 0.85, 0.42),
-            ground=(0.10, 0.11, 0.06), scale=0.85, clouds=0.75, lit=(0.95, 0.66, 0.55), seed=7)
+    kit.sun("Sun", SUN, 9.5, (1.0, 0.70, 0.42), 0.53)
+    kit.camera((EYE[0], EYE[1], 2.15 + float(height(*EYE[:2]))), (0.35, 12.0, 1.22), 32)
+    sky.sky(out / "evening.hdr", SUN, zenith=(0.19, 0.37, 0.74), horizon=(1.05, 0.78, 0.56), glow=(1.5, 0.85, 0.42),
+            ground=(0.10, 0.11, 0.06), scale=0.9, haze=0.085, clouds=0.7,
+            lit=(1.15, 0.82, 0.68), seed=7)
     kit.export(out / "field.glb")
     kit.add_instances(out / "field.glb", crowds)
     print("field.glb: instances", {name: len(c[0]) for name, c in crowds.items()}, "total", sum(len(c[0]) for c in crowds.values()))

@@ -8,7 +8,7 @@ from . import kit, sky, textures as tx
 WIDE, DEEP, HIGH = 4.6, 5.6, 2.75
 WINDOW_Y, WINDOW_Z = (1.75, 4.45), (0.42, 2.38)
 THICK = 0.34
-SUN = (-1.0, 0.16, 0.66)
+SUN = (-1.0, -0.30, 0.64)
 
 
 def surfaces(folder):
@@ -22,7 +22,7 @@ def surfaces(folder):
     trowel = tx.noise((256, 256), 2.2, seed=50)
     plaster = tx.save(folder, "plaster_normal", tx.normal_map(trowel, 0.5), 80)
     m["wall"] = kit.material("White plaster", (0.78, 0.755, 0.71), 0.9, normal=plaster, bump=0.35)
-    m["accent"] = kit.material("Sage plaster", (0.40, 0.46, 0.385), 0.9, normal=plaster, bump=0.35)
+    m["accent"] = kit.material("Sage plaster", (0.50, 0.55, 0.47), 0.9, normal=plaster, bump=0.35)
     m["ceiling"] = kit.material("Ceiling", (0.82, 0.81, 0.79), 0.95)
     m["paint"] = kit.material("White lacquer", (0.80, 0.79, 0.76), 0.35)
     color, height = tx.linen((256, 256), 52, 48, (0.83, 0.78, 0.70))
@@ -42,7 +42,8 @@ def surfaces(folder):
     m["bark"] = kit.material("Bark", (0.16, 0.10, 0.06), 0.9)
     m["picture"] = kit.material("Picture", rough=0.8, image=tx.save(folder, "picture", picture_pattern(), 88))
     m["paper"] = kit.material("Paper lantern", (0.82, 0.79, 0.72), 0.95)
-    m["grass"] = kit.material("Lawn", (0.10, 0.17, 0.045), 1.0)
+    m["grass"] = kit.material("Lawn", (0.07, 0.105, 0.035), 1.0)
+    m["hedge"] = kit.material("Hedge", (0.035, 0.075, 0.022), 0.9)
     for i, c in enumerate([(0.42, 0.08, 0.05), (0.06, 0.14, 0.20), (0.70, 0.60, 0.42), (0.10, 0.20, 0.13), (0.62, 0.33, 0.08)]):
         m[f"book{i}"] = kit.material(f"Book {i}", c, 0.7)
     return m
@@ -51,7 +52,7 @@ def surfaces(folder):
 def rug_pattern():
     """A cream rug with a woven border and rows of diamonds."""
     v, u = np.mgrid[0:320, 0:512] / np.array([320.0, 512.0]).reshape(2, 1, 1)
-    color = np.ones((320, 512, 3)) * (0.80, 0.75, 0.66)
+    color = np.ones((320, 512, 3)) * (0.72, 0.66, 0.57)
     x, y = u * 1.6, v
     edge = np.minimum(np.minimum(x, 1.6 - x), np.minimum(y, 1 - y))
     for near, far, tint in [(0.05, 0.075, (0.24, 0.30, 0.33)), (0.10, 0.112, (0.62, 0.34, 0.22))]:
@@ -120,6 +121,15 @@ def room(m):
     block("Transom", (x0 + 0.01, y0 + bar, z), (x1 - 0.01, y1 - bar, z + 0.035), m["paint"], 0.006)
     lawn = [[(-60, -40, -0.5), (-THICK, -40, -0.5)], [(-60, 50, -0.5), (-THICK, 50, -0.5)]]
     kit.link("Lawn", kit.grid("lawn", lawn, m["grass"]))
+    rng = np.random.default_rng(66)
+    a, e = np.linspace(0, 2 * np.pi, 25)[:-1], np.linspace(-1.2, 1.57, 13)
+    d = np.stack([np.cos(e)[:, None] * np.cos(a), np.cos(e)[:, None] * np.sin(a), np.sin(e)[:, None] * np.ones_like(a)], -1)
+    r = 1 + sum(0.13 / k**0.5 * np.sin(d @ rng.normal(size=3) * 2.6 * k + rng.uniform(0, 6)) for k in (1, 2, 3, 4))
+    bush = kit.grid("bush", d * r[..., None], m["hedge"], wrap_u=True)
+    for i in range(22):
+        size = rng.uniform(0.9, 2.1)
+        kit.link(f"Bush {i}", bush, (rng.uniform(-20, -15), -4 + 2.0 * i + rng.uniform(-0.6, 0.6), -0.5 + 0.5 * size),
+                 (0, 0, rng.uniform(0, 360)), size)
 
 
 def kit_uv(points, size):
@@ -170,8 +180,8 @@ def sofa(m):
     leg = kit.lathe("sofa leg", [(0.0, 0.0), (0.013, 0.0), (0.022, 0.16), (0.0, 0.16)], m["walnut"], 16, sharp=40)
     for i, (x, y) in enumerate([(x0 + 0.07, y0 + 0.08), (x0 + 0.07, y1 - 0.08), (x1 - 0.08, y0 + 0.08), (x1 - 0.08, y1 - 0.08)]):
         kit.link(f"Sofa leg {i}", leg, (x, y, 0))
-    kit.link("Pillow mustard", kit.cushion("pillow a", (0.44, 0.13, 0.44), m["mustard"], 0.55, 12), (3.92, 4.42, 0.66), (-24, 12, 72))
-    kit.link("Pillow cream", kit.cushion("pillow b", (0.42, 0.13, 0.42), m["cream"], 0.55, 12), (3.93, 3.12, 0.65), (-22, -8, 104))
+    kit.link("Pillow mustard", kit.cushion("pillow a", (0.44, 0.13, 0.44), m["mustard"], 0.55, 12), (3.98, 4.40, 0.67), (-20, -6, -38))
+    kit.link("Pillow cream", kit.cushion("pillow b", (0.42, 0.13, 0.42), m["cream"], 0.55, 12), (3.95, 3.92, 0.65), (-22, 8, -62))
 
 
 def table(m):
@@ -283,8 +293,8 @@ def build(out, folder):
     lantern[:, 0] -= 0.006 * (np.arange(49) % 3 == 0)
     kit.link("Lantern", kit.lathe("lantern", lantern, m["paper"], 48), (2.35, 3.45, 2.13))
     kit.link("Cord", kit.tube("cord", [(2.35, 3.45, 2.3), (2.35, 3.45, HIGH)], 0.003, m["black"], 6))
-    kit.sun("Sun", SUN, 13.0, (1.0, 0.87, 0.70), 0.53)
-    kit.camera((3.30, 0.28, 1.32), (1.95, 5.2, 1.13), 24)
+    kit.sun("Sun", SUN, 18.0, (1.0, 0.86, 0.68), 0.53)
+    kit.camera((3.22, 0.22, 1.38), (2.0, 5.2, 0.98), 23.5)
     sky.sky(out / "sky.hdr", SUN, zenith=(0.20, 0.40, 0.86), horizon=(0.78, 0.90, 1.05), glow=(1.15, 1.05, 0.90),
-            ground=(0.20, 0.24, 0.15), scale=3.2, clouds=0.45, lit=(1.15, 1.15, 1.15))
+            ground=(0.20, 0.24, 0.15), scale=6.4, clouds=0.45, lit=(1.15, 1.15, 1.15))
     kit.export(out / "interior.glb")

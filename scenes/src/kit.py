@@ -169,7 +169,7 @@ def box(name, size, made, bevel=0.004, uv_size=1.0, seed=0, segments=2):
         flat = int(np.argmin(np.ptp(p, axis=0)))
         axes = sorted((i for i in range(3) if i != flat), key=lambda i: -size[i])
         uvs += [tuple(q[axes] / uv_size + shift) for q in p]
-    data = mesh(name, points, faces, made, uvs)
+    data = mesh(name, points, faces, made, uvs, smooth=bevel > 0)
     if bevel:
         holder = bpy.data.objects.new(name, data)
         bpy.context.scene.collection.objects.link(holder)

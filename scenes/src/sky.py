@@ -56,21 +56,22 @@ def directions(h, w):
     return np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0 * phi], axis=-1)
 
 
-def sky(path, toward_sun, zenith, horizon, glow, ground, scale, clouds=0.0, lit=(1.0, 1.0, 1.0), h=128, seed=1):
+def sky(path, toward_sun, zenith, horizon, glow, ground, scale, haze=0.16, clouds=0.0, lit=(1.0, 1.0, 1.0),
+        h=128, seed=1):
     """A clear sky: a gradient, haze at the horizon, a broad glow about the sun's place and thin cirrus."""
     d = directions(h, 2 * h)
     sun = np.asarray(toward_sun, float) / np.linalg.norm(toward_sun)
     cosine = np.clip(d @ sun, -1, 1)
     up = np.clip(d[..., 2], 0, 1)
-    haze = np.exp(-up / 0.16)[..., None]
-    color = np.asarray(zenith) * (1 - haze) + np.asarray(horizon) * haze
+    low = np.exp(-up / haze)[..., None]
+    color = np.asarray(zenith) * (1 - low) + np.asarray(horizon) * low
     # The horizon is warm and bright under the sun, cooler and dimmer opposite it.
     flat = d[..., :2] @ (sun[:2] / np.linalg.norm(sun[:2]))
     near = (0.5 + 0.5 * flat)[..., None] * np.exp(-up / 0.25)[..., None]
     color = color * (1 - 0.55 * near) + np.asarray(glow) * near * 0.9
     color = color + np.asarray(glow) * (0.5 * np.maximum(cosine, 0) ** 10 + 0.5 * np.maximum(cosine, 0) ** 60)[..., None]
     if clouds:
-        veil = tx.step(-0.2, 1.9, tx.noise((h, 2 * h), 2.9, (2.5, 0.9), seed, 2.0)) * tx.step(0.03, 0.22, up)
+        veil = tx.step(-0.2, 1.9, tx.noise((h, 2 * h), 2.9, (2.5, 0.8), seed, 2.0)) * tx.step(0.03, 0.22, up)
         veil = veil * (1 - tx.step(0.75, 0.95, up)) * clouds
         bright = np.asarray(lit) * (0.75 + 0.6 * (0.5 + 0.5 * cosine[..., None]) ** 2)
         color = color * (1 - veil[..., None]) + bright * veil[..., None]

@@ -47,7 +47,7 @@ def cloth(made, seats):
     n, m = 76, 62
     u, v = np.meshgrid(np.linspace(-0.31, 0.31, n), np.linspace(-0.30, 0.26, m))
     # A little too much cloth for its place: shallow waves leave it room to fold.
-    wave = 0.008 * np.sin(15 * u + 4 * v + 0.6) + 0.005 * np.sin(9 * v - 7 * u) + 0.004 * np.sin(23 * u * (1 + v))
+    wave = 0.012 * np.sin(15 * u + 4 * v + 0.6) + 0.005 * np.sin(9 * v - 7 * u) + 0.004 * np.sin(23 * u * (1 + v))
     z = 0.026 + np.abs(wave)
     a = math.radians(-17)
     x = u * math.cos(a) - v * math.sin(a) + 0.115
@@ -62,7 +62,7 @@ def cloth(made, seats):
     mod.settings.mass = 0.15
     mod.settings.tension_stiffness = mod.settings.compression_stiffness = 18.0
     mod.settings.shear_stiffness = 6.0
-    mod.settings.bending_stiffness = 1.2
+    mod.settings.bending_stiffness = 0.8
     mod.settings.tension_damping = 8.0
     mod.settings.air_damping = 3.0
     mod.collision_settings.distance_min = 0.003
@@ -133,8 +133,8 @@ def surfaces(folder):
     m["grape"] = kit.material("Grape", (0.085, 0.018, 0.055), 0.24, coat=0.35, coat_rough=0.25)
     m["wood"] = kit.material("Stem", (0.10, 0.055, 0.025), 0.8)
     m["leaf"] = kit.material("Leaf", (0.055, 0.16, 0.035), 0.42)
-    m["globe"] = kit.material("Globe", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.66, 0.36), strength=2.6)
-    m["pearl"] = kit.material("Pearl light", (0.8, 0.8, 0.8), 0.6, emission=(1.0, 0.72, 0.42), strength=3.0)
+    m["globe"] = kit.material("Globe", (0.3, 0.3, 0.3), 0.6, emission=(1.0, 0.56, 0.24), strength=1.8)
+    m["pearl"] = kit.material("Pearl light", (0.3, 0.3, 0.3), 0.6, emission=(1.0, 0.58, 0.26), strength=2.2)
     return m
 
 
@@ -169,7 +169,7 @@ def vessels(m):
     dish = kit.curve([(0.0, 0.003), (0.030, 0.0), (0.034, 0.002), (0.046, 0.010), (0.047, 0.012), (0.045, 0.0122), (0.030, 0.006),
                       (0.0, 0.005)], 26)
     dish, pearl = kit.lathe("dish", dish, m["cream"], 40), kit.ball("pearl", 0.015, m["pearl"], 28, 16)
-    for i, (x, y) in enumerate([(-0.075, -0.165), (0.425, -0.02)]):
+    for i, (x, y) in enumerate([(-0.10, -0.175), (0.425, -0.02)]):
         kit.link(f"Dish {i}", dish, (x, y, 0))
         kit.link(f"Pearl light {i}", pearl, (x, y, 0.0205))
 
@@ -188,7 +188,7 @@ def fruit(m):
         kit.link(f"Orange {i}", orange, (bx + x, by + y, z), turn)
     kit.link("Lemon 0", yellow, (bx + 0.045, by - 0.075, 0.108), (78, 15, 62))
     kit.link("Lemon 1", yellow, (bx + 0.085, by + 0.055, 0.095), (70, -20, 140))
-    kit.link("Lemon 2", yellow, (0.02, -0.235, 0.0285), (90, 0, -66))
+    kit.link("Lemon 2", yellow, (0.035, -0.215, 0.0285), (90, 0, -66))
     green = leaf("leaf", m["leaf"])
     kit.link("Leaf 0", green, (bx - 0.004, by - 0.004, 0.166), (8, 18, 205))
     kit.link("Leaf 1", green, (bx - 0.002, by - 0.002, 0.166), (14, -10, 110), 0.85)
@@ -233,10 +233,10 @@ def build(out, folder):
     kit.link("Apron", kit.box("apron", (2.1, 0.03, 0.5), m["oak"], 0.004, 0.9, 3), (0, -0.27, -0.3))
     vessels(m)
     fruit(m)
-    cloth(m["linen"], [(0.105, 0.02, 0.055), (0.02, -0.235, 0.01), (0.28, -0.165, 0.05),
-                       (-0.075, -0.165, 0.04), (-0.165, -0.105, 0.04)])
-    kit.quad_light("Key", (-1.45, -0.35, 0.95), (0.0, 0.05, 0.08), (0.75, 0.75), (0.93, 0.97, 1.0), 30.0)
-    kit.quad_light("Warm lamp", (1.05, -0.12, 0.52), (0.05, 0.0, 0.05), (0.10, 0.10), (1.0, 0.50, 0.20), 190.0)
-    kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.6)
+    cloth(m["linen"], [(0.105, 0.02, 0.055), (0.035, -0.215, 0.01), (0.28, -0.165, 0.05),
+                       (-0.10, -0.175, 0.04), (-0.165, -0.105, 0.04)])
+    kit.quad_light("Key", (-1.45, -0.35, 0.95), (0.0, 0.05, 0.08), (0.58, 0.58), (0.93, 0.97, 1.0), 58.0)
+    kit.quad_light("Warm lamp", (1.05, -0.12, 0.52), (0.05, 0.0, 0.05), (0.10, 0.10), (1.0, 0.46, 0.17), 120.0)
+    kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.35)
     kit.camera((0.06, -1.62, 0.50), (0.005, 0.0, 0.094), 60)
     kit.export(out / "still_life.glb")
