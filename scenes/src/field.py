@@ -5,7 +5,7 @@ import numpy as np
 
 from . import kit, sky, textures as tx
 
-SUN = (-1.0, -0.10, 0.30)
+SUN = (-1.0, 0.10, 0.40)
 EYE = np.array([0.0, -3.2, 0.0])
 
 
@@ -289,7 +289,7 @@ def trees(m, crowds):
     rng = np.random.default_rng(400)
     x = np.array([-9.5, -34, -27, -21, 13, 19.5, 24, 36, 41, 5, -46, 30])
     y = np.array([25.0, 66, 72, 76, 70, 74, 68, 75, 70, 82, 70, 79])
-    size = np.concatenate([[0.95], rng.uniform(0.7, 1.3, len(x) - 1)])
+    size = np.concatenate([[1.35], rng.uniform(0.7, 1.3, len(x) - 1)])
     crowds["Trees"] = crowd(x, y, quaternions(rng.uniform(0, 6.28, len(x))), size)
     kit.link("Trees", tree("tree", m["bark"], m["foliage"]))
 
@@ -322,11 +322,11 @@ def build(out, folder):
     meadow(m, crowds)
     pinwheels(m, crowds)
     trees(m, crowds)
-    kit.sun("Sun", SUN, 9.5, (1.0, 0.70, 0.42), 0.53)
+    kit.sun("Sun", SUN, 10.5, (1.0, 0.72, 0.44), 0.53)
     kit.camera((EYE[0], EYE[1], 2.15 + float(height(*EYE[:2]))), (0.35, 12.0, 1.22), 32)
-    sky.sky(out / "evening.hdr", SUN, zenith=(0.19, 0.37, 0.74), horizon=(1.05, 0.78, 0.56), glow=(1.5, 0.85, 0.42),
-            ground=(0.10, 0.11, 0.06), scale=0.9, haze=0.085, clouds=0.7,
-            lit=(1.15, 0.82, 0.68), seed=7)
+    sky.sky(out / "evening.hdr", SUN, zenith=(0.13, 0.33, 0.74), horizon=(1.12, 0.86, 0.58), glow=(1.4, 0.80, 0.38),
+            ground=(0.10, 0.11, 0.06), scale=0.8, haze=0.075, clouds=0.5,
+            lit=(1.30, 0.98, 0.80), seed=7)
     kit.export(out / "field.glb")
     kit.add_instances(out / "field.glb", crowds)
     print("field.glb: instances", {name: len(c[0]) for name, c in crowds.items()}, "total", sum(len(c[0]) for c in crowds.values()))

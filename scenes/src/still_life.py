@@ -133,8 +133,8 @@ def surfaces(folder):
     m["grape"] = kit.material("Grape", (0.085, 0.018, 0.055), 0.24, coat=0.35, coat_rough=0.25)
     m["wood"] = kit.material("Stem", (0.10, 0.055, 0.025), 0.8)
     m["leaf"] = kit.material("Leaf", (0.055, 0.16, 0.035), 0.42)
-    m["globe"] = kit.material("Globe", (0.3, 0.3, 0.3), 0.6, emission=(1.0, 0.56, 0.24), strength=1.8)
-    m["pearl"] = kit.material("Pearl light", (0.3, 0.3, 0.3), 0.6, emission=(1.0, 0.58, 0.26), strength=2.2)
+    m["globe"] = kit.material("Globe", (0.02, 0.02, 0.02), 0.6, emission=(1.0, 0.63, 0.34), strength=1.35)
+    m["pearl"] = kit.material("Pearl light", (0.02, 0.02, 0.02), 0.6, emission=(1.0, 0.63, 0.34), strength=1.5)
     return m
 
 
@@ -235,7 +235,7 @@ def build(out, folder):
     fruit(m)
     cloth(m["linen"], [(0.105, 0.02, 0.055), (0.035, -0.215, 0.01), (0.28, -0.165, 0.05),
                        (-0.10, -0.175, 0.04), (-0.165, -0.105, 0.04)])
-    kit.quad_light("Key", (-1.45, -0.35, 0.95), (0.0, 0.05, 0.08), (0.58, 0.58), (0.93, 0.97, 1.0), 58.0)
+    kit.quad_light("Key", (-1.45, -0.32, 0.80), (0.0, 0.05, 0.08), (0.58, 0.58), (0.93, 0.97, 1.0), 58.0)
     kit.quad_light("Warm lamp", (1.05, -0.12, 0.52), (0.05, 0.0, 0.05), (0.10, 0.10), (1.0, 0.46, 0.17), 120.0)
     kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.35)
     kit.camera((0.06, -1.62, 0.50), (0.005, 0.0, 0.094), 60)
