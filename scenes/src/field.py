@@ -44,8 +44,8 @@ def quaternions(yaw, spin=0.0, lean_x=0.0, lean_y=0.0):
 def surfaces(folder):
     """Materials by name, with the ground's texture."""
     m = {}
-    patch = np.clip(0.5 + 0.22 * tx.noise((256, 256), 2.0, seed=100) + 0.1 * tx.noise((256, 256), 0.6, seed=101), 0, 1)
-    ground = tx.ramp(patch, (0, (0.22, 0.25, 0.09)), (0.5, (0.36, 0.40, 0.15)), (1, (0.52, 0.50, 0.24)))
+    patch = np.clip(0.5 + 0.16 * tx.noise((512, 512), 2.0, seed=100) + 0.15 * tx.noise((512, 512), 0.7, seed=101, low=8), 0, 1)
+    ground = tx.ramp(patch, (0, (0.27, 0.32, 0.10)), (0.5, (0.44, 0.49, 0.19)), (1, (0.60, 0.58, 0.30)))
     m["ground"] = kit.material("Ground", rough=1.0, image=tx.save(folder, "ground", ground, 84))
     for name, color in [("grass0", (0.13, 0.24, 0.035)), ("grass1", (0.22, 0.30, 0.05)), ("grass2", (0.40, 0.33, 0.11))]:
         m[name] = kit.material(name.replace("grass", "Grass "), color, 0.6)
@@ -222,14 +222,16 @@ def crowd(x, y, q, scale, lift=0.0):
 def meadow(m, crowds):
     """Grass, flowers and stones."""
     rng = np.random.default_rng(200)
-    for i, (count, tall, made) in enumerate([(6200, 0.21, "grass0"), (5600, 0.24, "grass1"), (3400, 0.30, "grass2")]):
+    for i, (count, tall, made) in enumerate([(6800, 0.21, "grass0"), (6200, 0.24, "grass1"), (3400, 0.30, "grass2")]):
         x, y, r = scatter(rng, count, 1.5, 95, 1.35)
         keep = np.ones(len(x), bool) if i < 2 else (np.sin(0.5 * x + 0.23 * y) + np.sin(0.31 * y - 0.2 * x) > -0.35)
         x, y, r = x[keep], y[keep], r[keep]
         size = rng.uniform(0.7, 1.15, len(x)) * (1.0 + 0.02 * r)
-        # Among the pinwheels the grass is kept short, so that their shadows lie on it.
-        off = np.abs(x - river(y)) - (2.6 + 0.055 * y)
-        size *= 0.45 + 0.55 * tx.step(-0.2, 2.2, off)
+        # Among the pinwheels the grass is mown, so that their shadows lie on it.
+        off = np.abs(x - river(y) - 0.4) - (2.6 + 0.055 * y)
+        size *= 0.40 + 0.60 * tx.step(-0.2, 2.2, off)
+        stands = rng.uniform(size=len(x)) < 0.22 + 0.78 * tx.step(-0.1, 0.7, off)
+        x, y, r, size = x[stands], y[stands], r[stands], size[stands]
         wide = size * (1.0 + 0.045 * r)
         q = quaternions(rng.uniform(-0.8, 0.8, len(x)))
         crowds[f"Grass {i}"] = crowd(x, y, q, np.stack([wide, wide, size], 1))
@@ -239,7 +241,7 @@ def meadow(m, crowds):
     for name, data, count, f, bias in [("Daisies", daisies, 4200, 0.42, -0.1), ("Poppies", poppies, 2600, 0.33, 0.35)]:
         x, y, r = scatter(rng, count, 2.0, 45, 1.25)
         patch = np.sin(f * x + 1.3 + bias) + np.sin(1.3 * f * y - 0.4 * x + 9 * bias) + rng.normal(0, 0.45, len(x))
-        keep = patch > bias
+        keep = (patch > bias) & ((np.abs(x - river(y)) > 2.4 + 0.05 * y) | (rng.uniform(size=len(x)) < 0.2))
         x, y, r = x[keep], y[keep], r[keep]
         q = quaternions(rng.uniform(-0.9, 0.9, len(x)), 0.0, rng.normal(0, 0.28, len(x)), rng.normal(0.06, 0.2, len(x)))
         crowds[name] = crowd(x, y, q, rng.uniform(0.75, 1.3, len(x)) * (1 + 0.018 * r))
@@ -303,7 +305,7 @@ def land(m):
     rows = np.array(rows)
     rows[..., 2] = height(rows[..., 0], rows[..., 1])
     ground = kit.grid("ground", rows, m["ground"])
-    uv = np.array([ground.vertices[l.vertex_index].co[:2] for l in ground.loops], np.float32) / 6.0
+    uv = np.array([ground.vertices[l.vertex_index].co[:2] for l in ground.loops], np.float32) / 5.0
     ground.uv_layers[0].data.foreach_set("uv", uv.ravel())
     kit.link("Ground", ground)
     for name, y, base, amp, f in [("near hill", 260, 9, 9, 0.013), ("far hill", 520, 26, 22, 0.0075)]:
@@ -324,8 +326,8 @@ def build(out, folder):
     trees(m, crowds)
     kit.sun("Sun", SUN, 10.5, (1.0, 0.72, 0.44), 0.53)
     kit.camera((EYE[0], EYE[1], 2.15 + float(height(*EYE[:2]))), (0.35, 12.0, 1.22), 32)
-    sky.sky(out / "evening.hdr", SUN, zenith=(0.13, 0.33, 0.74), horizon=(1.12, 0.86, 0.58), glow=(1.4, 0.80, 0.38),
-            ground=(0.10, 0.11, 0.06), scale=0.8, haze=0.075, clouds=0.5,
+    sky.sky(out / "evening.hdr", SUN, zenith=(0.22, 0.47, 0.92), horizon=(1.30, 1.02, 0.68), glow=(1.4, 0.80, 0.38),
+            ground=(0.10, 0.11, 0.06), scale=0.8, haze=0.10, clouds=0.6,
             lit=(1.30, 0.98, 0.80), seed=7)
     kit.export(out / "field.glb")
     kit.add_instances(out / "field.glb", crowds)

@@ -112,13 +112,14 @@ def room(m):
                             ("Skirting left", (0, 0, 0), (0.018, DEEP, 0.12)),
                             ("Skirting right", (WIDE - 0.018, 0, 0), (WIDE, DEEP, 0.12))]:
         block(name, low, high, m["paint"], 0.005)
-    x0, x1, bar = -0.25, -0.19, 0.055
+    x0, x1, bar = -0.25, -0.20, 0.05
     for name, a, b in [("bottom", z0 + 0.03, z0 + 0.03 + bar), ("top", z1 - bar, z1)]:
         block(f"Frame {name}", (x0, y0, a), (x1, y1, b), m["paint"], 0.006)
-    for i, y in enumerate(np.linspace(y0, y1 - bar, 4)):
+    for i, y in enumerate(np.linspace(y0, y1 - bar, 5)):
         block(f"Mullion {i}", (x0, y, z0 + 0.03 + bar), (x1, y + bar, z1 - bar), m["paint"], 0.006)
-    z = z0 + 0.68 * (z1 - z0)
-    block("Transom", (x0 + 0.01, y0 + bar, z), (x1 - 0.01, y1 - bar, z + 0.035), m["paint"], 0.006)
+    for i, part in enumerate((0.36, 0.68)):
+        z = z0 + part * (z1 - z0)
+        block(f"Transom {i}", (x0 + 0.005, y0 + bar, z), (x1 - 0.005, y1 - bar, z + 0.04), m["paint"], 0.006)
     lawn = [[(-60, -40, -0.5), (-THICK, -40, -0.5)], [(-60, 50, -0.5), (-THICK, 50, -0.5)]]
     kit.link("Lawn", kit.grid("lawn", lawn, m["grass"]))
     rng = np.random.default_rng(66)
@@ -293,8 +294,8 @@ def build(out, folder):
     lantern[:, 0] -= 0.006 * (np.arange(49) % 3 == 0)
     kit.link("Lantern", kit.lathe("lantern", lantern, m["paper"], 48), (2.35, 3.45, 2.13))
     kit.link("Cord", kit.tube("cord", [(2.35, 3.45, 2.3), (2.35, 3.45, HIGH)], 0.003, m["black"], 6))
-    kit.sun("Sun", SUN, 18.0, (1.0, 0.86, 0.68), 0.53)
+    kit.sun("Sun", SUN, 16.5, (1.0, 0.86, 0.68), 0.53)
     kit.camera((3.22, 0.22, 1.38), (2.0, 5.2, 0.98), 23.5)
     sky.sky(out / "sky.hdr", SUN, zenith=(0.20, 0.40, 0.86), horizon=(0.78, 0.90, 1.05), glow=(1.15, 1.05, 0.90),
-            ground=(0.20, 0.24, 0.15), scale=6.4, clouds=0.45, lit=(1.15, 1.15, 1.15))
+            ground=(0.20, 0.24, 0.15), scale=6.8, clouds=0.45, lit=(1.15, 1.15, 1.15))
     kit.export(out / "interior.glb")

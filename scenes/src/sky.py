@@ -71,7 +71,7 @@ def sky(path, toward_sun, zenith, horizon, glow, ground, scale, haze=0.16, cloud
     color = color * (1 - 0.55 * near) + np.asarray(glow) * near * 0.9
     color = color + np.asarray(glow) * (0.5 * np.maximum(cosine, 0) ** 10 + 0.5 * np.maximum(cosine, 0) ** 60)[..., None]
     if clouds:
-        veil = tx.step(-0.2, 1.9, tx.noise((h, 2 * h), 2.9, (2.5, 0.8), seed, 2.0)) * tx.step(0.03, 0.22, up)
+        veil = tx.step(0.2, 2.0, tx.noise((h, 2 * h), 2.9, (2.5, 0.8), seed, 2.0)) * tx.step(0.03, 0.22, up)
         veil = veil * (1 - tx.step(0.75, 0.95, up)) * clouds
         bright = np.asarray(lit) * (0.75 + 0.6 * (0.5 + 0.5 * cosine[..., None]) ** 2)
         color = color * (1 - veil[..., None]) + bright * veil[..., None]
