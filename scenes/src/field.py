@@ -5,7 +5,7 @@ import numpy as np
 
 from . import kit, sky, textures as tx
 
-SUN = (-1.0, 0.10, 0.40)
+SUN = (-1.0, 0.18, 0.36)
 EYE = np.array([0.0, -3.2, 0.0])
 
 
@@ -324,10 +324,10 @@ def build(out, folder):
     meadow(m, crowds)
     pinwheels(m, crowds)
     trees(m, crowds)
-    kit.sun("Sun", SUN, 10.5, (1.0, 0.72, 0.44), 0.53)
+    kit.sun("Sun", SUN, 12.0, (1.0, 0.72, 0.44), 0.53)
     kit.camera((EYE[0], EYE[1], 2.15 + float(height(*EYE[:2]))), (0.35, 12.0, 1.22), 32)
     sky.sky(out / "evening.hdr", SUN, zenith=(0.22, 0.47, 0.92), horizon=(1.30, 1.02, 0.68), glow=(1.4, 0.80, 0.38),
-            ground=(0.10, 0.11, 0.06), scale=0.8, haze=0.10, clouds=0.6,
+            ground=(0.10, 0.11, 0.06), scale=0.8, haze=0.06, clouds=0.55,
             lit=(1.30, 0.98, 0.80), seed=7)
     kit.export(out / "field.glb")
     kit.add_instances(out / "field.glb", crowds)

@@ -67,7 +67,7 @@ def sky(path, toward_sun, zenith, horizon, glow, ground, scale, haze=0.16, cloud
     color = np.asarray(zenith) * (1 - low) + np.asarray(horizon) * low
     # The horizon is warm and bright under the sun, cooler and dimmer opposite it.
     flat = d[..., :2] @ (sun[:2] / np.linalg.norm(sun[:2]))
-    near = (0.5 + 0.5 * flat)[..., None] * np.exp(-up / 0.25)[..., None]
+    near = ((0.5 + 0.5 * flat) ** 2 * np.exp(-up / (1.6 * haze)))[..., None]
     color = color * (1 - 0.55 * near) + np.asarray(glow) * near * 0.9
     color = color + np.asarray(glow) * (0.5 * np.maximum(cosine, 0) ** 10 + 0.5 * np.maximum(cosine, 0) ** 60)[..., None]
     if clouds:
