@@ -128,8 +128,7 @@ fn render_frame(
     let (mut desc, mut warnings) = scene::load(args, frame)?;
     environment::apply(args, &mut desc)?;
     let view = View { camera: args.get_one("camera").cloned(), size: args.get_one("size").copied() };
-    let prepared = prepare(&desc, &view, settings)?;
-    drop(desc);
+    let prepared = prepare(desc, &view, settings)?;
     warnings.extend(prepared.warnings.clone());
     tell(&warnings);
     if args.get_flag("strict") && !warnings.is_empty() {

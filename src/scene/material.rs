@@ -139,8 +139,9 @@ impl Scene {
     pub(super) fn look_up(&self, input: TextureInput, it: &Interaction) -> [f32; 4] {
         let mesh = self.mesh(&self.instances[it.instance as usize]);
         let Some(uv) = mesh.uv(input.uv_set, it.triangle, it.barycentrics) else { return [1.0; 4] };
-        let uv_area = mesh.uv_area(input.uv_set, it.triangle) * input.transform.area();
+        let uv_area = mesh.uv_area(input.uv_set, it.triangle);
         let footprint = if it.double_area > 0.0 { it.footprint * (uv_area / it.double_area).sqrt() } else { 0.0 };
+        let footprint = input.transform.footprint(footprint);
         self.textures[input.texture as usize].lookup(input.transform.apply(uv.to_array()), footprint)
     }
 

@@ -64,7 +64,7 @@ impl Scene {
     /// Memory of the acceleration structure, the meshes and the textures, in bytes.
     pub fn bytes(&self) -> [usize; 3] {
         let meshes = self.meshes.iter().map(|mesh| mesh.bytes()).sum();
-        let textures = self.textures.iter().map(Texture::bytes).sum();
+        let textures = self.textures.iter().map(|texture| texture.image().bytes()).sum();
         [self.bvh.bytes(), meshes, textures]
     }
 }

@@ -38,28 +38,28 @@ pub struct Prepared {
     pub warnings: Warnings,
 }
 
-/// Turns `desc` into what is traced, as `settings` ask. Reads `desc` and leaves it as it is.
+/// Turns `desc` into what is traced, as `settings` ask.
 ///
 /// # Errors
 /// An index of `desc` that is out of range, an unknown camera, a picture without size.
-pub fn prepare(desc: &SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
-    desc::check(desc)?;
+pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
+    desc::check(&desc)?;
     let mut warnings = Warnings::new();
-    let (camera_desc, size) = camera::choose(desc, view, &mut warnings)?;
-    let origin = render_space_origin(desc, camera_desc.transform.translation);
+    let (camera_desc, size) = camera::choose(&desc, view, &mut warnings)?;
+    let origin = render_space_origin(&desc, camera_desc.transform.translation);
     let camera = camera::prepare(&camera_desc, size, origin);
 
-    let effects = Effects::of(desc, settings);
-    let (materials, textures) = materials::prepare(desc, settings, &mut warnings);
+    let effects = Effects::of(&desc, settings);
+    let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
-    let mut geometry = geometry::prepare(desc, origin, &materials, &mut warnings);
+    let mut geometry = geometry::prepare(&desc, origin, &materials, &mut warnings);
     let build_time = start.elapsed();
 
-    let default_world = default_world(desc, &materials, &mut warnings);
+    let default_world = default_world(&desc, &materials, &mut warnings);
     let world = desc.world.as_ref().or(default_world.as_ref());
     let lights = if effects.light || settings.passes.needs(Quantity::Environment) {
-        lights::prepare(desc, world, origin, &mut geometry, &materials, &textures, &mut warnings)
+        lights::prepare(&desc, world, origin, &mut geometry, &materials, &textures, &mut warnings)
     } else {
         Vec::new()
     };
@@ -71,7 +71,7 @@ pub fn prepare(desc: &SceneDesc, view: &View, settings: &Settings) -> Result<Pre
         effects,
         lights,
         background_visible: world.is_some_and(|world| world.visible),
-        ids: Ids::of(desc, &geometry.placed),
+        ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         meshes: geometry.meshes,
         instances: geometry.instances,

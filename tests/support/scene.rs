@@ -135,7 +135,7 @@ pub fn settings(passes: &str, spp: u32) -> Settings {
 /// The picture of `desc`, `size` pixels on each side.
 pub fn picture(desc: &SceneDesc, size: u32, settings: &Settings) -> Picture {
     let view = View { camera: None, size: Some([size, size]) };
-    let prepared = prepare(desc, &view, settings).unwrap();
+    let prepared = prepare(desc.clone(), &view, settings).unwrap();
     penumbra::render::render(&prepared.scene, settings, &()).unwrap().film.develop()
 }
 

@@ -137,7 +137,7 @@ impl TexturedEmission {
     /// brightest corner so that a triangle with any light in it is chosen now and then.
     fn mean(&self, triangle: u32) -> Rgb {
         let (_, Some(input)) = self.slot(triangle) else { return self.slot(triangle).0 };
-        let footprint = (0.5 * self.mesh.uv_area(input.uv_set, triangle) * input.transform.area()).sqrt();
+        let footprint = input.transform.footprint((0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt());
         let third = 1.0 / 3.0;
         let mean = self.look_up(triangle, [third, third], footprint);
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];

@@ -1,22 +1,28 @@
 //! Materials with their constants folded, and the textures that are left.
 
-use crate::desc::{self, AlphaMode, Channel, MaterialDesc, SceneDesc, TextureRef};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureRef};
 use crate::error::Warnings;
 use crate::math::Rgb;
 use crate::scene::Material;
 use crate::scene::effects;
 use crate::scene::material::{ColorInput, NormalInput, Opacity, ScalarInput, TextureInput};
 use crate::settings::Settings;
-use crate::texture::{Texture, UvTransform};
+use crate::texture::{Image, Texture};
 
 /// Materials as in `desc`, with the default one added at the end, and every texture of `desc` that
-/// one of them looks up.
-pub fn prepare(desc: &SceneDesc, settings: &Settings, warnings: &mut Warnings) -> (Vec<Material>, Vec<Texture>) {
+/// one of them looks up. Texels move out of `desc` into the textures.
+pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warnings) -> (Vec<Material>, Vec<Texture>) {
     let mut used = vec![false; desc.materials.len()];
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
-    let mut builder = Builder { desc, settings, textures: Textures::new(desc) };
+    let images = prepare_images(desc, &used, warnings);
+    let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
+    let mut builder = Builder { desc, settings, textures };
     let fallback = MaterialDesc::default();
     let materials = desc.materials.iter().zip(&used).map(|(material, used)| (material, *used));
     let materials = materials
@@ -24,39 +30,73 @@ pub fn prepare(desc: &SceneDesc, settings: &Settings, warnings: &mut Warnings) -
         // A material that nothing uses keeps its index, and none of its textures.
         .map(|(material, used)| builder.material(if used { material } else { &fallback }, warnings))
         .collect();
-    (materials, builder.textures.finish(warnings))
+    (materials, builder.textures.list)
+}
+
+/// Pyramids of the images that materials in use look up, in parallel.
+fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) -> Vec<Option<Arc<Image>>> {
+    let mut wanted = vec![false; desc.images.len()];
+    let materials = desc.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material));
+    for texture in materials.flat_map(MaterialDesc::textures) {
+        wanted[desc.textures[texture.texture as usize].image as usize] = true;
+    }
+    // The world's texels are still needed.
+    let world = desc.world.as_ref().and_then(|world| world.image).map(|image| image.image as usize);
+    let prepared: Vec<(Option<Image>, Warnings)> = desc
+        .images
+        .par_iter_mut()
+        .enumerate()
+        .map(|(i, image)| {
+            let mut warnings = Warnings::new();
+            if !wanted[i] {
+                return (None, warnings);
+            }
+            let (name, place) = (image.name.clone(), image.place.clone());
+            let pixels = if world == Some(i) {
+                image.pixels.clone()
+            } else {
+                std::mem::replace(&mut image.pixels, PixelData::U8(Vec::new()))
+            };
+            let made = Image::new(ImageDesc { name, place: place.clone(), pixels, ..*image }, &mut warnings);
+            (made.map_err(|error| warnings.push(&place, format!("{error}: taken as white"))).ok(), warnings)
+        })
+        .collect();
+    prepared
+        .into_iter()
+        .map(|(image, of_image)| {
+            warnings.extend(of_image);
+            image.map(Arc::new)
+        })
+        .collect()
 }
 
 /// Textures of the scene, made when the first material asks.
 struct Textures<'a> {
     desc: &'a SceneDesc,
+    images: Vec<Option<Arc<Image>>>,
     /// New index of each texture that is used.
     index: Vec<Option<u32>>,
-    list: Vec<u32>,
-    constant: Vec<Option<Option<[f32; 4]>>>,
+    list: Vec<Texture>,
 }
 
-impl<'a> Textures<'a> {
-    fn new(desc: &'a SceneDesc) -> Self {
-        Self { desc, index: vec![None; desc.textures.len()], list: Vec::new(), constant: vec![None; desc.images.len()] }
+impl Textures<'_> {
+    fn image(&self, texture: &TextureRef) -> Option<&Arc<Image>> {
+        self.images[self.desc.textures[texture.texture as usize].image as usize].as_ref()
     }
 
-    /// The one value of a texture whose texels are all the same.
-    fn constant(&mut self, texture: u32) -> Option<[f32; 4]> {
-        let image = self.desc.textures[texture as usize].image as usize;
-        *self.constant[image].get_or_insert_with(|| crate::texture::constant_value(&self.desc.images[image]))
+    /// The one value of a texture whose texels are all the same, white for one without image.
+    fn constant(&self, texture: &TextureRef) -> Option<[f32; 4]> {
+        let Some(image) = self.image(texture) else { return Some([1.0; 4]) };
+        Texture::new(image.clone(), &self.desc.textures[texture.texture as usize]).constant()
     }
 
-    fn input(&mut self, texture: &TextureRef) -> TextureInput {
+    fn input(&mut self, texture: &TextureRef) -> Option<TextureInput> {
+        let image = self.image(texture)?.clone();
         let index = self.index[texture.texture as usize].get_or_insert_with(|| {
-            self.list.push(texture.texture);
+            self.list.push(Texture::new(image, &self.desc.textures[texture.texture as usize]));
             self.list.len() as u32 - 1
         });
-        TextureInput { texture: *index, uv_set: texture.uv_set, transform: UvTransform::new(&texture.transform) }
-    }
-
-    fn finish(self, warnings: &mut Warnings) -> Vec<Texture> {
-        Texture::prepare_all(self.desc, &self.list, warnings)
+        Some(TextureInput { texture: *index, uv_set: texture.uv_set, transform: texture.transform.into() })
     }
 }
 
@@ -67,13 +107,13 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn input(&mut self, inputs: &mut Vec<TextureInput>, texture: &TextureRef) -> u8 {
-        let input = self.textures.input(texture);
+    fn input(&mut self, inputs: &mut Vec<TextureInput>, texture: &TextureRef) -> Option<u8> {
+        let input = self.textures.input(texture)?;
         let index = inputs.iter().position(|known| *known == input).unwrap_or_else(|| {
             inputs.push(input);
             inputs.len() - 1
         });
-        index as u8
+        Some(index as u8)
     }
 
     fn color(&mut self, inputs: &mut Vec<TextureInput>, input: &desc::ColorInput) -> ColorInput {
@@ -81,9 +121,9 @@ impl Builder<'_> {
         let Some(texture) = input.texture.filter(|_| !factor.is_black()) else {
             return ColorInput { factor, texture: None };
         };
-        match self.textures.constant(texture.texture) {
+        match self.textures.constant(&texture) {
             Some([r, g, b, _]) => ColorInput { factor: factor * Rgb::new(r, g, b), texture: None },
-            None => ColorInput { factor, texture: Some(self.input(inputs, &texture)) },
+            None => ColorInput { factor, texture: self.input(inputs, &texture) },
         }
     }
 
@@ -98,9 +138,9 @@ impl Builder<'_> {
             Channel::B => 2,
             Channel::A => 3,
         };
-        match self.textures.constant(texture.texture) {
+        match self.textures.constant(&texture) {
             Some(texel) => ScalarInput { factor: factor * texel[usize::from(channel)], texture: None },
-            None => ScalarInput { factor, texture: Some((self.input(inputs, &texture), channel)) },
+            None => ScalarInput { factor, texture: self.input(inputs, &texture).map(|input| (input, channel)) },
         }
     }
 
@@ -132,8 +172,8 @@ impl Builder<'_> {
             unlit: desc.unlit,
             normal: desc
                 .normal
-                .filter(|n| n.scale != 0.0)
-                .map(|n| NormalInput { input: self.textures.input(&n.texture), scale: n.scale as f32 }),
+                .filter(|n| n.scale != 0.0 && self.textures.constant(&n.texture).is_none())
+                .and_then(|n| Some(NormalInput { input: self.textures.input(&n.texture)?, scale: n.scale as f32 })),
             occlusion: desc
                 .occlusion
                 .filter(|o| self.settings.occlusion_maps && o.factor != 0.0 && o.texture.is_some())
