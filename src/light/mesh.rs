@@ -79,7 +79,8 @@ impl Emitter for MeshLight {
         let [a, b, c] = triangle.p;
         let [b0, b1, b2] = warp::sample_triangle(u);
         let on_light = a * b0 + b * b1 + c * b2;
-        let ng = (b - a).cross(c - a).normalize_or_zero();
+        // In f64, where the squares of neither huge nor tiny triangles leave the range.
+        let ng = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let to_light = on_light - p;
         let dist_squared = to_light.length_squared();
         let wi = to_light / dist_squared.sqrt();

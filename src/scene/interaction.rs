@@ -41,12 +41,14 @@ impl Scene {
         let barycentrics = [hit.u, hit.v];
         let local = mesh.point(hit.triangle, barycentrics);
         let (p, p_err) = instance.point(local.p, local.p_err);
-        let [e1, e2] = local.edges.map(|e| instance.object_to_render.transform_vector3(e));
+        // In f64, where the squares of neither huge nor tiny triangles leave the range.
+        let [e1, e2] = local.edges.map(|e| instance.object_to_render.transform_vector3(e).as_dvec3());
         let cross = e1.cross(e2);
         let double_area = cross.length();
         let wo = -ray.d;
         let wound = if instance.mirrored { -cross } else { cross };
-        let ng = if double_area > 0.0 { wound / double_area } else { wo };
+        let ng = if double_area > 0.0 { (wound / double_area).as_vec3() } else { wo };
+        let double_area = double_area as f32;
         let ns = mesh.normal(hit.triangle, barycentrics).map_or(ng, |n| {
             let n = Vec3::from(instance.normal_to_render * crate::math::Vec3A::from(n)).normalize_or(ng);
             // Authored normals that point inward would turn the surface inside out.
