@@ -30,6 +30,9 @@ const LAST_ETA: f32 = 0.82;
 /// (indices above 1 first), index, roughness and angle, and W and V in the same order.
 static TABLES: &[u8; 2 * VALUES] = include_bytes!("energy.bin");
 
+/// What rounding takes for 0 may be this large.
+pub(super) const LEAST: f32 = 1e-4;
+
 const SLICE: usize = COS_NODES * ROUGHNESS_NODES;
 const AVERAGES: usize = 2 * SLICE;
 const BLENDS: usize = AVERAGES + ROUGHNESS_NODES;
@@ -112,10 +115,10 @@ impl Energy {
         Plain { reflected, reflected_schlick }
     }
 
-    /// S alone.
+    /// S alone. It doesn't become 0, so that what has a value has a chance to be drawn.
     pub fn reflected_blend(&self, eta: EtaPlace) -> f32 {
         let [blend] = self.in_slices(BLENDS, eta);
-        blend
+        blend.max(LEAST)
     }
 
     pub fn refractive(&self, eta: EtaPlace) -> Refractive {

@@ -45,8 +45,7 @@ impl Seen {
         let reflecting = grid(&|u| {
             let h = ggx.sample_bounded(wo, u);
             let wi = reflect(wo, h);
-            let weight =
-                if wi.z > 0.0 { wi.z * ggx.visibility(wo, wi) * ggx.d(h) / ggx.pdf_bounded(wo, h) } else { 0.0 };
+            let weight = if wi.z > 0.0 { ggx.shadowing(wo, wi) * ggx.d(h) / ggx.pdf_bounded(wo, h) } else { 0.0 };
             Microfacet { h, cos: wo.dot(h).clamp(0.0, 1.0), weight: weight * scale }
         });
         let visible = grid(&|u| {
@@ -70,7 +69,7 @@ impl Seen {
         for m in &self.visible {
             if let Some(wi) = refract(self.wo, m.h, eta).filter(|wi| wi.z < 0.0) {
                 // G2/G1(wo).
-                let shadowing = 2.0 * -wi.z * self.ggx.visibility(self.wo, wi) * (self.wo.z + self.ggx.slant(self.wo));
+                let shadowing = 2.0 * self.ggx.shadowing(self.wo, wi) * (self.wo.z + self.ggx.slant(self.wo));
                 sum.refracted += m.weight * shadowing;
                 sum.refracted_blend += m.weight * shadowing * dielectric.blend(m.cos);
             }
