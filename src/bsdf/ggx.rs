@@ -8,9 +8,10 @@
 //!
 //! Directions `w` have z > 0 here. All terms are written so that none cancels as α goes to 0.
 
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
-use crate::math::{Vec3, safe_sqrt, sqr};
+use crate::math::{Vec3, sqr};
+use crate::sampling::warp::sample_cone;
 
 /// Width below which the distribution counts as a mirror. A lobe of 10⁻⁴ rad can't be told from one,
 /// and half vectors in f32 resolve no less than a thousandth of it.
@@ -48,7 +49,7 @@ impl Ggx {
     #[inline]
     pub fn sample_visible(self, wo: Vec3, u: [f32; 2]) -> Vec3 {
         let stretched = self.stretch(wo);
-        self.unstretch(stretched + cap(stretched.z, u))
+        self.unstretch(stretched + sample_cone(u, 1.0 + stretched.z))
     }
 
     /// Density of [`Ggx::sample_visible`].
@@ -61,7 +62,7 @@ impl Ggx {
     #[inline]
     pub fn sample_bounded(self, wo: Vec3, u: [f32; 2]) -> Vec3 {
         let stretched = self.stretch(wo);
-        self.unstretch(stretched + cap(self.bound(wo) * stretched.z, u))
+        self.unstretch(stretched + sample_cone(u, 1.0 + self.bound(wo) * stretched.z))
     }
 
     /// Density of the direction reflected at [`Ggx::sample_bounded`], in solid angle of `wi`.
@@ -87,15 +88,6 @@ impl Ggx {
     fn unstretch(self, h: Vec3) -> Vec3 {
         Vec3::new(self.alpha * h.x, self.alpha * h.y, h.z.max(0.0)).normalize_or(Vec3::Z)
     }
-}
-
-/// A uniform direction of the spherical cap z ≥ −`depth`.
-#[inline]
-fn cap(depth: f32, u: [f32; 2]) -> Vec3 {
-    let (sin, cos) = (TAU * u[0]).sin_cos();
-    let z = (1.0 - u[1]) * (1.0 + depth) - depth;
-    let r = safe_sqrt((1.0 - z) * (1.0 + z));
-    Vec3::new(r * cos, r * sin, z)
 }
 
 #[cfg(test)]
