@@ -1,70 +1,417 @@
-//! Laws of scattering.
+//! Laws of scattering: one list of surfaces, each line held to all of them.
 
-use penumbra::bsdf::{Bsdf, Surface};
+#[path = "support/chi2.rs"]
+mod chi2;
+
+use std::f64::consts::{PI, TAU};
+
+use penumbra::bsdf::{Bsdf, BsdfSample, Lobe, Surface, f0_from_eta, fresnel_dielectric};
 use penumbra::math::{Rgb, Vec3};
 use penumbra::sampling::{Dimension, Pattern, Sampler};
 
-fn wo(degrees: f32) -> Vec3 {
-    let t = degrees.to_radians();
-    Vec3::new(t.sin(), 0.0, t.cos())
+const WHITE: Surface = Surface {
+    base_color: Rgb::WHITE,
+    metallic: 0.0,
+    roughness: 0.5,
+    ior: 1.5,
+    specular: 1.0,
+    specular_color: Rgb::WHITE,
+    transmission: 0.0,
+    thin: false,
+};
+const METAL: Surface = Surface { metallic: 1.0, ..WHITE };
+const GLASS: Surface = Surface { transmission: 1.0, ..WHITE };
+const TEAL: Rgb = Rgb::new(0.1, 0.6, 0.5);
+
+struct Case {
+    name: &'static str,
+    surface: Surface,
+    /// True where nothing is absorbed: the white furnace must give 1.
+    lossless: bool,
+    /// False for a view from within.
+    entering: bool,
 }
 
-fn furnace(s: &Surface, entering: bool, wo: Vec3) -> f64 {
-    let bsdf = Bsdf::new(s, entering);
-    let n = 1 << 16;
-    let sampler = Sampler::new(Pattern::Sobol, 1);
-    let mut sum = 0.0;
-    for i in 0..n {
+const fn outside(name: &'static str, surface: Surface, lossless: bool) -> Case {
+    Case { name, surface, lossless, entering: true }
+}
+
+const fn inside(name: &'static str, surface: Surface, lossless: bool) -> Case {
+    Case { name, surface, lossless, entering: false }
+}
+
+const CASES: &[Case] = &[
+    outside("Lambert", Surface { ior: 1.0, ..WHITE }, true),
+    outside("Lambert, no specular", Surface { specular: 0.0, base_color: TEAL, ..WHITE }, false),
+    outside("plastic, smooth", Surface { roughness: 0.0, ..WHITE }, true),
+    outside("plastic, polished", Surface { roughness: 0.15, ..WHITE }, true),
+    outside("plastic", Surface { base_color: TEAL, ..WHITE }, false),
+    outside("plastic, white", WHITE, true),
+    outside("plastic, matt", Surface { roughness: 1.0, ..WHITE }, true),
+    outside("plastic, gold reflection", Surface { specular_color: Rgb::new(9.0, 4.0, 1.0), ..WHITE }, false),
+    outside("plastic, dense", Surface { ior: 2.4, roughness: 0.3, ..WHITE }, true),
+    outside("plastic, thinner than its outside", Surface { ior: 0.7, ..WHITE }, false),
+    inside("plastic, back", WHITE, true),
+    outside("metal, smooth", Surface { roughness: 0.0, base_color: TEAL, ..METAL }, false),
+    outside("metal, polished", Surface { roughness: 0.15, base_color: TEAL, ..METAL }, false),
+    outside("metal, white", METAL, true),
+    outside("metal, white and matt", Surface { roughness: 1.0, ..METAL }, true),
+    outside("glass, smooth", Surface { roughness: 0.0, ..GLASS }, true),
+    inside("glass, smooth, inside", Surface { roughness: 0.0, ..GLASS }, true),
+    outside("glass, frosted lightly", Surface { roughness: 0.15, ..GLASS }, true),
+    inside("glass, frosted lightly, inside", Surface { roughness: 0.15, ..GLASS }, true),
+    outside("glass, frosted", GLASS, true),
+    inside("glass, frosted, inside", GLASS, true),
+    outside("glass, matt", Surface { roughness: 1.0, ..GLASS }, true),
+    inside("glass, matt, inside", Surface { roughness: 1.0, ..GLASS }, true),
+    outside("glass, tinted", Surface { base_color: TEAL, specular_color: Rgb::new(3.0, 1.0, 0.0), ..GLASS }, false),
+    inside("glass, no reflection weight, inside", Surface { specular: 0.0, ..GLASS }, true),
+    outside("glass, bubble", Surface { ior: 0.7, ..GLASS }, true),
+    outside("glass, index matched", Surface { ior: 1.0, ..GLASS }, true),
+    outside("sheet, smooth", Surface { roughness: 0.0, thin: true, ..GLASS }, true),
+    outside("sheet, frosted", Surface { thin: true, ..GLASS }, true),
+    inside("sheet, frosted and tinted", Surface { thin: true, base_color: TEAL, ..GLASS }, false),
+    outside("half glass", Surface { transmission: 0.5, ..WHITE }, true),
+    outside("all layers", Surface { metallic: 0.3, transmission: 0.5, base_color: TEAL, ..WHITE }, false),
+    inside("all layers, inside", Surface { metallic: 0.3, transmission: 0.5, roughness: 0.3, ..WHITE }, true),
+    outside("all layers, smooth", Surface { metallic: 0.3, transmission: 0.5, roughness: 0.0, ..WHITE }, true),
+];
+
+impl Case {
+    fn bsdf(&self) -> Bsdf {
+        Bsdf::new(&self.surface, self.entering)
+    }
+
+    /// True where light comes from the denser side.
+    fn has_critical_angle(&self) -> bool {
+        !self.entering || self.surface.ior < 1.0
+    }
+}
+
+/// A view at an angle to the normal, on either side of it.
+fn view(degrees: f32, azimuth: f32, above: bool) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vec3::new(sin * azimuth.cos(), sin * azimuth.sin(), if above { cos } else { -cos })
+}
+
+fn samples(bsdf: &Bsdf, wo: Vec3, pattern: Pattern, n: u64) -> impl Iterator<Item = Option<BsdfSample>> {
+    let sampler = Sampler::new(pattern, 11);
+    (0..n).map(move |i| {
         let s = sampler.for_sample(0, 0, i);
-        if let Some(b) = bsdf.sample(wo, s.get_1d(Dimension::FREE), s.get_2d(Dimension::LENS)) {
-            sum += f64::from(b.weight.sum().mean());
+        bsdf.sample(wo, s.get_1d(Dimension::FREE), s.get_2d(Dimension::LENS))
+    })
+}
+
+/// What a white surrounding sees: the mean of the weights, per class.
+fn furnace(bsdf: &Bsdf, wo: Vec3) -> [Rgb; 3] {
+    let n = 1 << 14;
+    let mut sum = [Rgb::BLACK; 3];
+    for s in samples(bsdf, wo, Pattern::Sobol, n).flatten() {
+        for (sum, part) in sum.iter_mut().zip([s.weight.diffuse, s.weight.glossy, s.weight.transmission]) {
+            *sum += part * (1.0 / n as f32);
         }
     }
-    sum / n as f64
+    sum
+}
+
+fn total(parts: [Rgb; 3]) -> Rgb {
+    parts.into_iter().sum()
 }
 
 #[test]
-fn against_cycles() {
-    let w = Rgb::WHITE;
-    let d = Surface { base_color: w, ..Surface::default() };
-    let list: &[(&str, Surface, [f64; 5])] = &[
-        ("metal 1 r .5", Surface { metallic: 1.0, roughness: 0.5, ..d }, [1.0; 5]),
-        ("metal 1 r 1", Surface { metallic: 1.0, roughness: 1.0, ..d }, [1.0; 5]),
+fn samples_agree_with_eval() {
+    for case in CASES {
+        let bsdf = case.bsdf();
+        for (degrees, above) in [(0.0, true), (30.0, true), (70.0, false), (89.0, true)] {
+            let wo = view(degrees, 0.7, above);
+            for s in samples(&bsdf, wo, Pattern::Independent, 2000).flatten() {
+                let name = case.name;
+                assert!((s.wi.length() - 1.0).abs() < 1e-5 && s.pdf > 0.0, "{name}: {s:?}");
+                assert_eq!(s.lobe == Lobe::Transmission, s.wi.z * wo.z < 0.0, "{name}: {s:?}");
+                let eval = bsdf.eval(wo, s.wi);
+                if s.delta {
+                    assert!(s.pdf <= 1.0 + 1e-6);
+                } else {
+                    assert!((eval.pdf / s.pdf - 1.0).abs() < 1e-3, "{name} {wo}: {s:?} {eval:?}");
+                    for (w, f) in [
+                        (s.weight.diffuse, eval.f_cos.diffuse),
+                        (s.weight.glossy, eval.f_cos.glossy),
+                        (s.weight.transmission, eval.f_cos.transmission),
+                    ] {
+                        let d = w * s.pdf - f;
+                        assert!(d.to_array().iter().all(|d| d.abs() < 1e-3 * s.pdf), "{name}: {s:?} {eval:?}");
+                    }
+                }
+                if bsdf.is_delta_only() {
+                    assert!(s.delta && eval.pdf == 0.0 && eval.f_cos.sum().is_black());
+                }
+                let crosses = s.lobe == Lobe::Transmission && !case.surface.thin && case.surface.ior != 1.0;
+                let eta = if case.entering { case.surface.ior } else { 1.0 / case.surface.ior };
+                assert_eq!(s.eta, if crosses { eta } else { 1.0 }, "{name}");
+            }
+        }
+    }
+}
+
+/// Counts of sampled directions against the density, and counts of deltas and of failures against what
+/// the density leaves.
+#[test]
+fn directions_follow_the_density() {
+    let views = [(5.0, true), (60.0, true), (80.0, false)];
+    let grid = chi2::Grid { nx: 26, ny: 18 };
+    let n = 40_000;
+    let direction = |x: f64, y: f64| {
+        let z = 2.0 * x - 1.0;
+        let (sin, cos) = (TAU * y).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
+    };
+    for case in CASES {
+        let bsdf = case.bsdf();
+        for (degrees, above) in views {
+            let wo = view(degrees, 0.7, above);
+            let density = |x, y| f64::from(bsdf.eval(wo, direction(x, y)).pdf) * 4.0 * PI;
+            let mass = grid.integrals(&density, 2e-6);
+            let scattered: f64 = mass.iter().sum();
+            assert!(scattered < 1.0 + 2e-3, "{} {degrees}: density integrates to {scattered}", case.name);
+
+            let mut observed = vec![0.0; mass.len()];
+            let (mut deltas, mut none) = (0.0, 0.0);
+            let mut p_delta = [0.0; 2];
+            for s in samples(&bsdf, wo, Pattern::Independent, n) {
+                match s {
+                    Some(s) if s.delta => {
+                        deltas += 1.0;
+                        p_delta[usize::from(s.lobe == Lobe::Transmission)] = f64::from(s.pdf);
+                    }
+                    Some(s) => {
+                        let azimuth = f64::from(s.wi.y).atan2(f64::from(s.wi.x)).rem_euclid(TAU) / TAU;
+                        observed[grid.cell([0.5 + 0.5 * f64::from(s.wi.z), azimuth])] += 1.0;
+                    }
+                    None => none += 1.0,
+                }
+            }
+            let p_delta: f64 = p_delta.iter().sum();
+            let mut expected: Vec<f64> = mass.iter().map(|m| m * n as f64).collect();
+            observed.extend([deltas, none]);
+            expected.extend([p_delta * n as f64, (1.0 - scattered - p_delta).max(0.0) * n as f64]);
+            chi2::check(&observed, &expected, CASES.len() * views.len())
+                .unwrap_or_else(|e| panic!("{} {degrees}: {e}; density {scattered}, none {none}", case.name));
+        }
+    }
+}
+
+#[test]
+fn energy_is_kept_and_never_made() {
+    for case in CASES {
+        let bsdf = case.bsdf();
+        for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
+            for above in [true, false] {
+                let seen = total(furnace(&bsdf, view(degrees, 0.3, above)));
+                // The tables are less exact where the view grazes, and where there is a critical angle.
+                let tolerance = if degrees > 86.0 {
+                    2e-2
+                } else if case.has_critical_angle() {
+                    1e-2
+                } else {
+                    5e-3
+                };
+                for c in seen.to_array() {
+                    assert!(c <= 1.0 + tolerance, "{} {degrees}: {c}", case.name);
+                    assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
+                }
+            }
+        }
+    }
+}
+
+/// The color passes: each class's color is what it contributes in a white surrounding.
+#[test]
+fn albedo_is_the_furnace_per_class() {
+    for case in CASES {
+        let bsdf = case.bsdf();
+        for degrees in [0.0, 45.0, 60.0, 75.0, 85.0] {
+            let wo = view(degrees, 0.3, true);
+            let albedo = bsdf.albedo(wo);
+            let parts = furnace(&bsdf, wo);
+            // A critical angle is a step that the tables smear between reflection and passage.
+            for (seen, told) in parts.into_iter().zip([albedo.diffuse, albedo.glossy, albedo.transmission]) {
+                let d = seen - told;
+                let tolerance = if case.has_critical_angle() { 0.3 } else { 0.012 };
+                assert!(d.to_array().iter().all(|d| d.abs() < tolerance), "{} {degrees}: {seen:?} {told:?}", case.name);
+                assert!(seen.is_black() || told.max_component() > 0.0, "{} {degrees}", case.name);
+            }
+            let d = total(parts) - albedo.sum();
+            assert!(d.to_array().iter().all(|d| d.abs() < 0.02), "{} {degrees}: {parts:?} {albedo:?}", case.name);
+        }
+    }
+}
+
+/// Cycles 5.0.1, white furnace over an infinite plane, MULTI_GGX, measured at 1024 samples.
+#[test]
+fn furnace_of_cycles() {
+    let gray = |v| Rgb::splat(v);
+    let table: &[(&str, Surface, [f32; 5])] = &[
+        ("metal 1, r .5", METAL, [1.0005, 1.0004, 1.0, 0.9999, 0.9994]),
+        ("metal 1, r 1", Surface { roughness: 1.0, ..METAL }, [1.0001, 1.0001, 0.9998, 0.9999, 0.9985]),
+        ("metal .5, r .5", Surface { base_color: gray(0.5), ..METAL }, [0.4788, 0.4735, 0.4759, 0.5019, 0.5514]),
         (
-            "metal .5 r .5",
-            Surface { base_color: w * 0.5, metallic: 1.0, roughness: 0.5, ..d },
-            [0.4788, 0.4735, 0.4759, 0.5019, 0.5514],
-        ),
-        (
-            "metal .5 r 1",
-            Surface { base_color: w * 0.5, metallic: 1.0, roughness: 1.0, ..d },
+            "metal .5, r 1",
+            Surface { base_color: gray(0.5), roughness: 1.0, ..METAL },
             [0.2611, 0.2858, 0.3126, 0.3651, 0.4379],
         ),
         (
-            "dielectric 0 r 0",
-            Surface { base_color: w * 0.0, roughness: 0.0, ..d },
-            [0.04, 0.0502, 0.0892, 0.2531, 0.6128],
+            "dielectric 0, r 0",
+            Surface { base_color: gray(0.0), roughness: 0.0, ..WHITE },
+            [0.0400, 0.0502, 0.0892, 0.2531, 0.6128],
         ),
+        ("dielectric 0, r .5", Surface { base_color: gray(0.0), ..WHITE }, [0.0373, 0.0467, 0.0678, 0.1181, 0.1791]),
+        ("dielectric 1, r .5", WHITE, [0.9999, 0.9994, 0.9986, 0.9946, 0.9900]),
+        ("glass 1, r 1", Surface { roughness: 1.0, ..GLASS }, [1.0002, 1.0004, 1.0001, 0.9996, 0.9926]),
         (
-            "dielectric 0 r .5",
-            Surface { base_color: w * 0.0, roughness: 0.5, ..d },
-            [0.0373, 0.0467, 0.0678, 0.1181, 0.1791],
+            "glass .25, r 0",
+            Surface { base_color: gray(0.25), roughness: 0.0, ..GLASS },
+            [0.5200, 0.5251, 0.5446, 0.6265, 0.8064],
         ),
-        ("dielectric 1 r .5", Surface { roughness: 0.5, ..d }, [0.9999, 0.9994, 0.9986, 0.9946, 0.9900]),
-        (
-            "transmission 1 r 1",
-            Surface { transmission: 1.0, roughness: 1.0, ..d },
-            [1.0002, 1.0004, 1.0001, 0.9996, 0.9926],
-        ),
-        (
-            "transmission .25 r 0",
-            Surface { base_color: w * 0.25, transmission: 1.0, roughness: 0.0, ..d },
-            [0.52, 0.5251, 0.5446, 0.6265, 0.8064],
-        ),
-        ("thin 1 r .5", Surface { transmission: 1.0, roughness: 0.5, thin: true, ..d }, [1.0; 5]),
     ];
-    for (name, s, expected) in list {
-        let got: Vec<f64> = [0.0, 45.0, 60.0, 75.0, 85.0].iter().map(|&a| furnace(s, true, wo(a))).collect();
-        println!("{name:24} {got:.4?}\n{:24} {expected:.4?}", "");
+    for (name, surface, expected) in table {
+        let bsdf = Bsdf::new(surface, true);
+        for (degrees, expected) in [0.0, 45.0, 60.0, 75.0, 85.0].into_iter().zip(expected) {
+            let seen = total(furnace(&bsdf, view(degrees, 0.0, true))).g;
+            println!("{name:20} {degrees:4} {seen:.4} {expected:.4}");
+            // Cycles itself strays from 1 by as much at 85 degrees, where white plastic is exact here.
+            assert!((seen / expected - 1.0).abs() < 0.0105, "{name}, {degrees}: {seen} {expected}");
+        }
+    }
+}
+
+/// The color passes of Cycles 5.0.1 for base color (.8, .4, .2) at 0, 60 and 80 degrees; those of rough
+/// glass are coarse estimates there (they sum to 0.72 of the furnace's 0.90 at 80 degrees), so only at 0.
+#[test]
+fn color_passes_of_cycles() {
+    type Passes = [[f32; 3]; 3];
+    const NONE: [f32; 3] = [0.0; 3];
+    let base = Surface { base_color: Rgb::new(0.8, 0.4, 0.2), ..WHITE };
+    let glass = Surface { transmission: 1.0, ..base };
+    let metal = Surface { metallic: 1.0, ..base };
+    let table: &[(&str, Surface, f32, Passes)] = &[
+        ("metal", metal, 0.0, [NONE, [0.7857, 0.3796, 0.1868], NONE]),
+        ("metal", metal, 60.0, [NONE, [0.7819, 0.3825, 0.1994], NONE]),
+        ("metal", metal, 80.0, [NONE, [0.8031, 0.4427, 0.2776], NONE]),
+        ("metal, matt", Surface { roughness: 1.0, ..metal }, 60.0, [NONE, [0.6409, 0.2347, 0.1059], NONE]),
+        ("metal, smooth", Surface { roughness: 0.0, ..metal }, 80.0, [NONE, [0.8783, 0.6348, 0.5130], NONE]),
+        ("plastic", base, 0.0, [[0.7701, 0.3850, 0.1925], [0.0374; 3], NONE]),
+        ("plastic", base, 60.0, [[0.7446, 0.3723, 0.1862], [0.0692; 3], NONE]),
+        ("plastic", base, 80.0, [[0.6773, 0.3387, 0.1693], [0.1534; 3], NONE]),
+        ("plastic, smooth", Surface { roughness: 0.0, ..base }, 80.0, [[0.4863, 0.2431, 0.1216], [0.3922; 3], NONE]),
+        ("glass", glass, 0.0, [NONE, [0.0405, 0.0404, 0.0404], [0.8579, 0.6053, 0.4273]]),
+        ("glass, smooth", Surface { roughness: 0.0, ..glass }, 60.0, [NONE, [0.0898; 3], [0.8147, 0.5760, 0.4073]]),
+        (
+            "all layers",
+            Surface { metallic: 0.3, transmission: 0.5, ..base },
+            0.0,
+            [[0.2695, 0.1348, 0.0674], [0.2630, 0.1411, 0.0832], [0.3003, 0.2118, 0.1496]],
+        ),
+    ];
+    for (name, surface, degrees, [diffuse, glossy, transmission]) in table {
+        let albedo = Bsdf::new(surface, true).albedo(view(*degrees, 0.0, true));
+        for (ours, theirs) in [(albedo.diffuse, diffuse), (albedo.glossy, glossy), (albedo.transmission, transmission)]
+        {
+            println!("{name:15} {degrees:4} {ours:.4?} {theirs:.4?}");
+            for (a, b) in ours.to_array().into_iter().zip(theirs) {
+                let tolerance = if *degrees > 70.0 { 0.012 } else { 0.006 };
+                assert!((a - b).abs() < tolerance, "{name}, {degrees}: {ours:?} {theirs:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lambert_is_reciprocal() {
+    let bsdf = Bsdf::new(&Surface { ior: 1.0, ..WHITE }, true);
+    let (a, b) = (view(20.0, 0.1, true), view(70.0, 2.0, true));
+    let f = |wo, wi: Vec3| bsdf.eval(wo, wi).f_cos.sum().g / wi.z;
+    assert!((f(a, b) / f(b, a) - 1.0).abs() < 1e-6);
+    assert!((f(a, b) - 1.0 / std::f32::consts::PI).abs() < 1e-6);
+}
+
+/// Nothing but finite answers, whatever the parameters and however grazing the directions.
+#[test]
+fn extremes_stay_finite() {
+    let last = 1.0 - 2.0_f32.powi(-24);
+    let us = [[0.0, 0.0], [last, last], [0.0, last], [last, 0.0], [0.5, 0.5], [0.3, 0.9]];
+    let directions: Vec<Vec3> = [0.0, 1e-30, 1e-7, 1e-3, 0.5, 1.0]
+        .into_iter()
+        .flat_map(|z: f32| [z, -z])
+        .map(|z| Vec3::new(0.6 * (1.0 - z * z).sqrt(), 0.8 * (1.0 - z * z).sqrt(), z))
+        .collect();
+    for roughness in [0.0, 1e-7, 0.00999, 0.0101, 0.05, 1.0, f32::NAN, 7.0] {
+        for ior in [0.0, 0.5, 1.0 - 1e-6, 1.0, 1.0 + 1e-6, 1.001, 1.5, 3.0, 1e9, f32::INFINITY, f32::NAN] {
+            for (metallic, transmission) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.3, 0.5)] {
+                for (thin, entering) in [(false, true), (false, false), (true, true)] {
+                    let surface = Surface { roughness, ior, metallic, transmission, thin, ..WHITE };
+                    check_finite(&surface, entering, &directions, &us);
+                }
+            }
+        }
+    }
+    let black = Surface { base_color: Rgb::BLACK, specular: 0.0, ..WHITE };
+    assert!(Bsdf::new(&black, true).sample(Vec3::Z, 0.5, [0.5, 0.5]).is_none());
+}
+
+fn check_finite(surface: &Surface, entering: bool, directions: &[Vec3], us: &[[f32; 2]]) {
+    let bsdf = Bsdf::new(surface, entering);
+    for &wo in directions {
+        let albedo = bsdf.albedo(wo);
+        assert!(albedo.is_finite() && albedo.sum().max_component() < 1.05, "{surface:?} {wo}: {albedo:?}");
+        for &u in us {
+            for uc in [0.0, 0.2, 0.5, 0.9, 1.0 - 2.0_f32.powi(-24)] {
+                let Some(s) = bsdf.sample(wo, uc, u) else { continue };
+                let good = s.weight.is_finite() && s.pdf.is_finite() && s.pdf > 0.0 && s.wi.is_finite();
+                let color = s.weight.sum().to_array();
+                assert!(good && color.iter().all(|&c| c >= 0.0), "{surface:?} {wo} {uc} {u:?}: {s:?}");
+            }
+        }
+        for &wi in directions {
+            for wi in [wi, -wi, Vec3::new(-wo.x, -wo.y, wo.z), -wo] {
+                let e = bsdf.eval(wo, wi);
+                assert!(e.f_cos.is_finite() && e.pdf.is_finite() && e.pdf >= 0.0, "{surface:?} {wo} {wi}: {e:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_glass_obeys_fresnel_and_snell() {
+    for (entering, degrees) in [(true, 0.0), (true, 60.0), (true, 89.0), (false, 30.0), (false, 41.0), (false, 60.0)] {
+        let eta: f32 = if entering { 1.5 } else { 1.0 / 1.5 };
+        let bsdf = Bsdf::new(&Surface { roughness: 0.0, ..GLASS }, entering);
+        let wo = view(degrees, 0.0, true);
+        let f = fresnel_dielectric(wo.z, eta);
+        for s in samples(&bsdf, wo, Pattern::Sobol, 64).flatten() {
+            assert!(s.delta && (s.weight.sum().g - 1.0).abs() < 1e-5);
+            if s.lobe == Lobe::Glossy {
+                assert!((s.pdf - f).abs() < 1e-5 && (s.wi - Vec3::new(-wo.x, -wo.y, wo.z)).length() < 1e-6);
+            } else {
+                assert!((s.pdf - (1.0 - f)).abs() < 1e-5 && (s.wi.x * eta + wo.x).abs() < 1e-6 && s.wi.z < 0.0);
+            }
+        }
+        if !entering && degrees > 41.9 {
+            assert_eq!(f, 1.0);
+        }
+    }
+    assert!((f0_from_eta(1.5) - 0.04).abs() < 1e-7);
+}
+
+/// A lobe just above the threshold of smoothness answers as a mirror does.
+#[test]
+fn polish_meets_the_mirror() {
+    for surface in [METAL, GLASS, Surface { base_color: TEAL, ..WHITE }] {
+        for degrees in [0.0, 50.0, 80.0] {
+            let wo = view(degrees, 0.4, true);
+            let seen = |roughness| total(furnace(&Bsdf::new(&Surface { roughness, ..surface }, true), wo));
+            let d = seen(0.0099) - seen(0.0101);
+            assert!(d.to_array().iter().all(|d| d.abs() < 2e-3), "{surface:?} {degrees}: {d:?}");
+        }
     }
 }

@@ -25,7 +25,8 @@ pub fn f0_from_eta(eta: f32) -> f32 {
     sqr((eta - 1.0) / (eta + 1.0))
 }
 
-/// Mean reflectance of a dielectric, 2 ∫ F(μ) μ dμ: fit by Kulla and Conty.
+/// Mean reflectance of a dielectric, 2 ∫ F(μ) μ dμ: fit by Kulla and Conty, within 0.007
+/// for indices of 0.5 to 3.
 pub(super) fn average_dielectric(eta: f32) -> f32 {
     let fit = if eta >= 1.0 {
         (eta - 1.0) / (4.085_67 + 1.000_71 * eta)
@@ -108,4 +109,60 @@ pub(super) fn refract(wo: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let inverse = 1.0 / eta;
     let cos_t_squared = 1.0 - inverse * inverse * (1.0 - cos * cos);
     (cos_t_squared > 0.0).then(|| (h * (inverse * cos - cos_t_squared.sqrt()) - wo * inverse).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2 ∫ F(μ) μ dμ.
+    fn average(f: impl Fn(f32) -> f32) -> f32 {
+        let n = 20_000;
+        let mu = |i: i32| (i as f32 + 0.5) / n as f32;
+        (0..n).map(|i| f64::from(2.0 * f(mu(i)) * mu(i) / n as f32)).sum::<f64>() as f32
+    }
+
+    #[test]
+    fn known_reflectances() {
+        // Index 1.5 at 0, 45, 60, 75 and 85 degrees.
+        for (degrees, f) in [(0.0_f32, 0.0400), (45.0, 0.0502), (60.0, 0.0892), (75.0, 0.2531), (85.0, 0.6128)] {
+            assert!((fresnel_dielectric(degrees.to_radians().cos(), 1.5) - f).abs() < 1e-4);
+        }
+        assert_eq!(fresnel_dielectric(0.0, 1.5), 1.0);
+        assert_eq!(fresnel_dielectric(0.7, 1.0), 0.0);
+        assert_eq!(fresnel_dielectric(0.7, 1.0 / 1.5), 1.0);
+        // Brewster's angle reflects one polarization only: ((1 − η²)/(1 + η²))²/2.
+        let eta = 1.5_f32;
+        let brewster = (1.0 / (1.0 + eta * eta)).sqrt();
+        let expected = 0.5 * sqr((1.0 - eta * eta) / (1.0 + eta * eta));
+        assert!((fresnel_dielectric(brewster, eta) - expected).abs() < 1e-6);
+    }
+
+    #[test]
+    fn both_sides_of_an_interface_reflect_alike() {
+        for cos in [0.1_f32, 0.4, 0.9, 1.0] {
+            let cos_t = (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
+            assert!((fresnel_dielectric(cos, 1.5) - fresnel_dielectric(cos_t, 1.0 / 1.5)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn averages_are_integrals() {
+        for eta in [0.5, 0.7, 0.9, 1.1, 1.5, 2.0, 3.0] {
+            let exact = average(|mu| fresnel_dielectric(mu, eta));
+            assert!((average_dielectric(eta) - exact).abs() < 7e-3, "{eta}: {exact}");
+        }
+        let metal = Metal { f0: Rgb::new(0.1, 0.5, 0.9) };
+        assert!((metal.average().g - average(|mu| metal.reflectance(mu).g)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn refraction_obeys_snell() {
+        let wo = Vec3::new(0.6, 0.0, 0.8);
+        for eta in [1.0, 1.5, 1.0 / 1.2] {
+            let wi = refract(wo, Vec3::Z, eta).unwrap();
+            assert!((eta * wi.x + wo.x).abs() < 1e-6 && wi.z < 0.0);
+        }
+        assert!(refract(wo, Vec3::Z, 0.59).is_none());
+    }
 }

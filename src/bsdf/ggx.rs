@@ -8,9 +8,10 @@
 //!
 //! Directions `w` have z > 0 here. All terms are written so that none cancels as α goes to 0.
 
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
-use crate::math::{Vec3, safe_sqrt, sqr};
+use crate::math::{Vec3, sqr};
+use crate::sampling::warp::sample_cone;
 
 /// Width below which the distribution counts as a mirror. A lobe of 10⁻⁴ rad can't be told from one,
 /// and half vectors in f32 resolve no less than a thousandth of it.
@@ -36,17 +37,19 @@ impl Ggx {
         (w.z * w.z + sqr(self.alpha) * (w.x * w.x + w.y * w.y)).sqrt()
     }
 
-    /// G2(wo, wi) / (4 zo zi) for |z| of both.
+    /// G2(wo, wi) / (4 cos θo) for directions on either side: shadowing correlated in height.
     #[inline]
-    pub fn visibility(self, wo: Vec3, wi: Vec3) -> f32 {
-        0.5 / (wo.z.abs() * self.slant(wi) + wi.z.abs() * self.slant(wo))
+    pub fn shadowing(self, wo: Vec3, wi: Vec3) -> f32 {
+        let (zo, zi) = (wo.z.abs(), wi.z.abs());
+        let sum = zo * self.slant(wi) + zi * self.slant(wo);
+        if sum > 0.0 { 0.5 * zi / sum } else { 0.0 }
     }
 
     /// A normal visible from `wo`, with density D(h) G1(wo) (wo·h) / zo.
     #[inline]
     pub fn sample_visible(self, wo: Vec3, u: [f32; 2]) -> Vec3 {
         let stretched = self.stretch(wo);
-        self.unstretch(stretched + cap(stretched.z, u))
+        self.unstretch(stretched + sample_cone(u, 1.0 + stretched.z))
     }
 
     /// Density of [`Ggx::sample_visible`].
@@ -59,7 +62,7 @@ impl Ggx {
     #[inline]
     pub fn sample_bounded(self, wo: Vec3, u: [f32; 2]) -> Vec3 {
         let stretched = self.stretch(wo);
-        self.unstretch(stretched + cap(self.bound(wo) * stretched.z, u))
+        self.unstretch(stretched + sample_cone(u, 1.0 + self.bound(wo) * stretched.z))
     }
 
     /// Density of the direction reflected at [`Ggx::sample_bounded`], in solid angle of `wi`.
@@ -87,11 +90,63 @@ impl Ggx {
     }
 }
 
-/// A uniform direction of the spherical cap z ≥ −`depth`.
-#[inline]
-fn cap(depth: f32, u: [f32; 2]) -> Vec3 {
-    let (sin, cos) = (TAU * u[0]).sin_cos();
-    let z = (1.0 - u[1]) * (1.0 + depth) - depth;
-    let r = safe_sqrt((1.0 - z) * (1.0 + z));
-    Vec3::new(r * cos, r * sin, z)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn views() -> impl Iterator<Item = Vec3> {
+        [1e-3_f32, 0.1, 0.5, 0.99, 1.0].into_iter().map(|z| Vec3::new((1.0 - z * z).sqrt(), 0.0, z))
+    }
+
+    /// ∫ D(h) (h·z) dh = 1, on a grid in the tangent of the angle over α.
+    #[test]
+    fn projected_area_is_one() {
+        for alpha in [1e-4_f32, 0.01, 0.3, 1.0] {
+            let (ggx, n) = (Ggx { alpha }, 4000);
+            let mut sum = 0.0;
+            for i in 0..n {
+                // tan²θ = α² x/(1 − x) makes D cos θ dω uniform in x.
+                let x = (i as f32 + 0.5) / n as f32;
+                let tan_squared = sqr(alpha) * x / (1.0 - x);
+                let cos_squared = 1.0 / (1.0 + tan_squared);
+                let h = Vec3::new((tan_squared * cos_squared).sqrt(), 0.0, cos_squared.sqrt());
+                let jacobian = sqr(alpha) * sqr(cos_squared) * sqr(1.0 / (1.0 - x));
+                sum += f64::from(ggx.d(h) * jacobian * std::f32::consts::PI) / f64::from(n);
+            }
+            assert!((sum - 1.0).abs() < 1e-3, "{alpha}: {sum}");
+        }
+    }
+
+    /// Drawn normals face the view, and weights G2/G1 never exceed 1.
+    #[test]
+    fn drawn_normals_are_visible() {
+        for alpha in [1e-4, 0.05, 0.5, 1.0] {
+            let ggx = Ggx { alpha };
+            for wo in views() {
+                for i in 0..200 {
+                    let u = [(i as f32 * 0.618_034).fract(), (i as f32 * 0.754_877).fract()];
+                    for h in [ggx.sample_visible(wo, u), ggx.sample_bounded(wo, u)] {
+                        assert!((h.length() - 1.0).abs() < 1e-5 && h.z >= 0.0);
+                        assert!(wo.dot(h) > -1e-4, "{alpha} {wo} {h}");
+                    }
+                    let wi = Vec3::new(u[0] - 0.5, u[1] - 0.5, 0.3).normalize();
+                    let ratio = 2.0 * ggx.shadowing(wo, wi) * (wo.z + ggx.slant(wo));
+                    assert!((0.0..=1.0 + 1e-5).contains(&ratio));
+                }
+            }
+        }
+    }
+
+    /// Bounding only takes away directions below the surface: its density is never smaller.
+    #[test]
+    fn bounding_raises_the_density() {
+        for alpha in [0.05, 0.5, 1.0] {
+            let ggx = Ggx { alpha };
+            for wo in views() {
+                let h = (wo + Vec3::Z).normalize();
+                let visible = 0.5 * ggx.d(h) / (wo.z + ggx.slant(wo));
+                assert!(ggx.pdf_bounded(wo, h) >= visible * (1.0 - 1e-5));
+            }
+        }
+    }
 }

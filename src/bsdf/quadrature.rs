@@ -7,10 +7,23 @@ use super::ggx::{Ggx, MIN_ALPHA};
 use super::reflection::reflect;
 use crate::math::{Rgb, Vec3, safe_sqrt};
 
-/// How many azimuths of half a turn (the other half mirrors it), and how many heights.
-pub(super) struct Rule {
-    pub azimuths: usize,
-    pub heights: usize,
+/// Azimuths of half a turn; the other half mirrors it.
+const AZIMUTHS: usize = 24;
+const HEIGHTS: usize = 256;
+
+/// The random numbers that give an azimuth and a height: the concentric map of disks, inverted.
+fn random_numbers(azimuth: usize, height: usize) -> [f32; 2] {
+    let r = ((height as f32 + 0.5) / HEIGHTS as f32).sqrt();
+    // In eighths of a turn.
+    let phi = 4.0 * (azimuth as f32 + 0.5) / AZIMUTHS as f32;
+    let [a, b] = if phi < 1.0 {
+        [r, r * phi]
+    } else if phi < 3.0 {
+        [r * (2.0 - phi), r]
+    } else {
+        [-r, r * (4.0 - phi)]
+    };
+    [0.5 + 0.5 * a, 0.5 + 0.5 * b]
 }
 
 /// The microfacets seen from a direction.
@@ -32,21 +45,19 @@ struct Microfacet {
 }
 
 impl Seen {
-    pub fn new(alpha: f32, cos: f32, rule: &Rule) -> Self {
+    /// Those seen at `cos` to the normal.
+    pub fn new(alpha: f32, cos: f32) -> Self {
         let ggx = Ggx { alpha: alpha.max(MIN_ALPHA) };
         let cos = cos.max(1e-5);
         let wo = Vec3::new(safe_sqrt(1.0 - cos * cos), 0.0, cos);
-        let scale = 1.0 / (rule.azimuths * rule.heights) as f32;
+        let scale = 1.0 / (AZIMUTHS * HEIGHTS) as f32;
         let grid = |sample: &dyn Fn([f32; 2]) -> Microfacet| {
-            let heights = (0..rule.heights).map(|v| (v as f32 + 0.5) / rule.heights as f32);
-            let azimuths = |v: f32| (0..rule.azimuths).map(move |u| [0.5 * (u as f32 + 0.5) / rule.azimuths as f32, v]);
-            heights.flat_map(azimuths).map(sample).collect()
+            (0..HEIGHTS).flat_map(|v| (0..AZIMUTHS).map(move |u| random_numbers(u, v))).map(sample).collect()
         };
         let reflecting = grid(&|u| {
             let h = ggx.sample_bounded(wo, u);
             let wi = reflect(wo, h);
-            let weight =
-                if wi.z > 0.0 { wi.z * ggx.visibility(wo, wi) * ggx.d(h) / ggx.pdf_bounded(wo, h) } else { 0.0 };
+            let weight = if wi.z > 0.0 { ggx.shadowing(wo, wi) * ggx.d(h) / ggx.pdf_bounded(wo, h) } else { 0.0 };
             Microfacet { h, cos: wo.dot(h).clamp(0.0, 1.0), weight: weight * scale }
         });
         let visible = grid(&|u| {
@@ -70,7 +81,7 @@ impl Seen {
         for m in &self.visible {
             if let Some(wi) = refract(self.wo, m.h, eta).filter(|wi| wi.z < 0.0) {
                 // G2/G1(wo).
-                let shadowing = 2.0 * -wi.z * self.ggx.visibility(self.wo, wi) * (self.wo.z + self.ggx.slant(self.wo));
+                let shadowing = 2.0 * self.ggx.shadowing(self.wo, wi) * (self.wo.z + self.ggx.slant(self.wo));
                 sum.refracted += m.weight * shadowing;
                 sum.refracted_blend += m.weight * shadowing * dielectric.blend(m.cos);
             }

@@ -1,6 +1,6 @@
 //! A [`Bsdf`] seen from one direction: albedos, the choice between lobes, evaluation and sampling.
 
-use super::energy::{Energy, Plain, Refractive, compensation};
+use super::energy::{Energy, LEAST, Plain, Refractive, compensation};
 use super::fresnel::{Dielectric, refract, schlick};
 use super::ggx::Ggx;
 use super::principled::{GlassLayer, Passage};
@@ -46,7 +46,7 @@ impl<'a> View<'a> {
             glass_reflected: Rgb::BLACK,
             transmitted: Rgb::BLACK,
             diffuse: bsdf.diffuse,
-            p_diffuse: 1.0,
+            p_diffuse: if bsdf.has_diffuse() { 1.0 } else { 0.0 },
             p_reflection: 0.0,
             p_passage: 0.0,
         };
@@ -91,9 +91,9 @@ impl<'a> View<'a> {
         let passed = match layer.passage {
             Passage::RoughBent => {
                 let Refractive { refracted, refracted_blend, .. } = averages;
-                fresnel
-                    .f0
-                    .map(|f0| (refracted - f0 * (refracted - refracted_blend) - fresnel.f90 * refracted_blend).max(0.0))
+                fresnel.f0.map(|f0| {
+                    (refracted - f0 * (refracted - refracted_blend) - fresnel.f90 * refracted_blend).max(LEAST)
+                })
             }
             _ => reflected.map(|r| (plain.reflected - r).max(0.0)),
         };
