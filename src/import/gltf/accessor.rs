@@ -173,6 +173,20 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The factor by which stored integers become normalized values; 1 where they stay as they are.
+    pub fn normalization(&self, index: usize) -> Result<f32, String> {
+        let accessor = self.accessor(index)?;
+        let component = Component::from_code(accessor.component_type).map_err(|e| format!("accessor {index} {e}"))?;
+        Ok(match component {
+            _ if !accessor.normalized => 1.0,
+            Component::I8 => 1.0 / 127.0,
+            Component::U8 => 1.0 / 255.0,
+            Component::I16 => 1.0 / 32767.0,
+            Component::U16 => 1.0 / 65535.0,
+            Component::U32 | Component::F32 => 1.0,
+        })
+    }
+
     /// Every component of every element in one list, and how many an element has.
     pub fn flat(&self, index: usize) -> Result<(Vec<f32>, usize), String> {
         fn flatten<const N: usize>(values: Vec<[f32; N]>) -> (Vec<f32>, usize) {

@@ -105,10 +105,11 @@ object!(PrimitiveExtensions {
     #[serde(rename = "KHR_materials_variants")]
     variants: VariantMappings,
     #[serde(rename = "KHR_draco_mesh_compression")]
-    draco: Option<Empty>,
+    draco: Option<Draco>,
 });
 object!(VariantMappings { mappings: Vec<VariantMapping> });
 object!(VariantMapping { material: Option<usize>, variants: Vec<usize> });
+object!(Draco { buffer_view: Option<usize>, attributes: BTreeMap<String, u32> });
 object!(Empty {});
 
 object!(Accessor {

@@ -9,11 +9,14 @@
 
 mod accessor;
 mod animation;
+mod attributes;
 mod buffer;
 mod camera;
+mod clean;
 mod container;
 mod deform;
 mod document;
+mod draco;
 mod instancing;
 mod json;
 mod light;
