@@ -104,7 +104,8 @@ impl Filter {
             Shape::Gaussian => 1.5 * width,
             Shape::Triangle | Shape::BlackmanHarris | Shape::Mitchell => width,
         };
-        let mut filter = Self { name: row.name, shape: row.shape, radius, scale: 1.0, cdf: Vec::new(), guide: Vec::new() };
+        let mut filter =
+            Self { name: row.name, shape: row.shape, radius, scale: 1.0, cdf: Vec::new(), guide: Vec::new() };
         if !matches!(row.shape, Shape::Box | Shape::Triangle) {
             filter.tabulate();
         }

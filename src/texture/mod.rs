@@ -9,4 +9,4 @@ mod transform;
 
 pub use image::Image;
 pub use lookup::Texture;
-pub use transform::UvTransform;
+pub use transform::{TextureRef, UvTransform};
