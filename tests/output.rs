@@ -287,6 +287,56 @@ fn what_cannot_be_written_or_read_is_told_with_the_files_name() {
 }
 
 #[test]
+fn damaged_files_are_told_and_never_crash() {
+    in_folder(|folder| {
+        let path = folder.join("damaged.exr");
+        let picture = sample_picture(20, 9, "combined,depth,crypto_object");
+        let mut state = 5_u32;
+        let mut below = |n: usize| {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            ((u64::from(state) * n as u64) >> 32) as usize
+        };
+        for compression in [Compression::Zip, Compression::Piz] {
+            file::write(&path, &picture, &metadata(), &Options { compression, ..Options::default() }).expect("written");
+            let whole = fs::read(&path).expect("read");
+            let mut errors = 0;
+            for _ in 0..400 {
+                let mut bytes = whole.clone();
+                for _ in 0..=below(3) {
+                    let at = below(bytes.len());
+                    bytes[at] = below(256) as u8;
+                }
+                fs::write(&path, &bytes).expect("written");
+                if let Err(error) = file::read(&path) {
+                    assert!(error.to_string().contains("damaged.exr"), "{error}");
+                    errors += 1;
+                }
+            }
+            assert!(errors > 40, "{compression:?}: only {errors} of 400 were noticed");
+        }
+    });
+}
+
+/// A header may promise 29 GB in a file of a few hundred bytes; nothing may be reserved for it.
+#[test]
+fn headers_that_promise_too_much_are_refused() {
+    in_folder(|folder| {
+        let path = folder.join("bomb.exr");
+        file::write(&path, &sample_picture(2, 2, "combined"), &Metadata::default(), &Options::default())
+            .expect("written");
+        let mut bytes = fs::read(&path).expect("read");
+        let name = b"dataWindow\0box2i\0";
+        let at = bytes.windows(name.len()).position(|window| window == name).expect("every header has one");
+        // Length, then min x, min y, max x, max y.
+        let max = at + name.len() + 4 + 8;
+        bytes[max..max + 8].copy_from_slice(&[0xff, 0xff, 0, 0, 0xff, 0xff, 0, 0]);
+        fs::write(&path, &bytes).expect("written");
+        let error = file::read(&path).expect_err("refused");
+        assert!(error.to_string().contains("bomb.exr"), "{error}");
+    });
+}
+
+#[test]
 fn previews_are_srgb() {
     in_folder(|folder| {
         let path = folder.join("preview.png");

@@ -67,6 +67,8 @@ pub struct Filter {
     /// |f|'s distribution function at the borders of [`CELLS`] equal cells from -radius to radius;
     /// empty for those inverted in closed form.
     cdf: Vec<f32>,
+    /// For each of [`CELLS`] equal ranges of u, the cell where the search for u begins.
+    guide: Vec<u16>,
 }
 
 impl fmt::Display for Filter {
@@ -114,7 +116,8 @@ impl Filter {
             Shape::Gaussian => 1.5 * width,
             Shape::Triangle | Shape::BlackmanHarris | Shape::Mitchell => width,
         };
-        let mut filter = Self { name: row.name, shape: row.shape, radius, scale: 1.0, cdf: Vec::new() };
+        let mut filter =
+            Self { name: row.name, shape: row.shape, radius, scale: 1.0, cdf: Vec::new(), guide: Vec::new() };
         if !matches!(row.shape, Shape::Box | Shape::Triangle) {
             filter.tabulate();
         }
@@ -158,7 +161,10 @@ impl Filter {
     /// Where the tabulated distribution function reaches `u`, linear within a cell: |f| is taken as
     /// constant there, an error of its second moment below 1e-6.
     fn invert(&self, u: f32) -> f32 {
-        let cell = self.cdf.partition_point(|&c| c <= u).clamp(1, CELLS) - 1;
+        let mut cell = usize::from(self.guide[((u * CELLS as f32) as usize).min(CELLS - 1)]);
+        while cell < CELLS - 1 && self.cdf[cell + 1] <= u {
+            cell += 1;
+        }
         let (low, high) = (self.cdf[cell], self.cdf[cell + 1]);
         let within = if high > low { ((u - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
         self.radius * ((cell as f32 + within) * (2.0 / CELLS as f32) - 1.0)
@@ -180,6 +186,9 @@ impl Filter {
         }
         self.scale = (absolute / signed) as f32;
         self.cdf = sums.into_iter().map(|sum| (sum / absolute) as f32).collect();
+        // Chen and Asau 1974: the search is as long as there are cells in a range, about one on average.
+        let begin = |range: usize| self.cdf.partition_point(|&c| c <= range as f32 / CELLS as f32).clamp(1, CELLS) - 1;
+        self.guide = (0..CELLS).map(|range| begin(range) as u16).collect();
     }
 }
 

@@ -14,7 +14,7 @@ mod store;
 mod tile;
 
 pub use filter::{FILTERS, Filter, FilterRow};
-pub use pass::{Means, PASSES, Pass, PassSet, Storage};
+pub use pass::{PASSES, Pass, PassSet, Storage};
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};
 pub use sample::{CryptoSample, FirstHit, PixelSample, Split};

@@ -22,7 +22,7 @@ pub enum Storage {
 
 /// The sums of one pixel over its samples, as a pass sees them.
 #[derive(Clone, Copy, Debug)]
-pub struct Means<'a> {
+pub(super) struct Means<'a> {
     /// Sum of weight × value per number of the film's layout.
     pub(super) sums: &'a [f64],
     /// Where each quantity begins in `sums`.

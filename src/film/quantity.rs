@@ -136,7 +136,12 @@ impl Quantities {
 
     /// Its members, in the order of [`Quantity::ALL`].
     pub fn iter(self) -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(move |&q| self.contains(q))
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let next = Quantity::ALL.get(rest.trailing_zeros() as usize).copied();
+            rest &= rest.wrapping_sub(1);
+            next
+        })
     }
 }
 
@@ -150,5 +155,15 @@ mod tests {
             assert_eq!(q as usize, i);
         }
         assert_eq!(Quantity::ALL.len(), Quantity::FirstHit as usize + 1);
+    }
+
+    #[test]
+    fn sets_give_their_members_in_order() {
+        use Quantity::*;
+        let set = Quantities::default().with(FirstHit).with(Ao).with(Combined);
+        assert_eq!(set.iter().collect::<Vec<_>>(), [Combined, Ao, FirstHit]);
+        assert_eq!(Quantities::default().iter().count(), 0);
+        let all = Quantity::ALL.into_iter().fold(Quantities::default(), Quantities::with);
+        assert_eq!(all.iter().collect::<Vec<_>>(), Quantity::ALL);
     }
 }

@@ -3,7 +3,7 @@
 use std::array;
 
 use super::cryptomatte::{CryptoKind, Matte};
-use super::pass::PassSet;
+use super::pass::{Means, PassSet};
 use super::quantity::{Quantities, Quantity};
 use super::sample::{FirstHit, PixelSample};
 
@@ -182,9 +182,9 @@ impl Tile {
         self.non_finite
     }
 
-    pub(super) fn sums(&self, x: u32, y: u32) -> super::Means<'_> {
+    pub(super) fn sums(&self, x: u32, y: u32) -> Means<'_> {
         let pixel = self.index(x, y);
-        super::Means {
+        Means {
             sums: &self.sums[pixel * self.layout.stride..][..self.layout.stride],
             offsets: &self.layout.offsets,
             count: self.counts[pixel],

@@ -6,11 +6,12 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write};
+use std::io::{self, BufReader, BufWriter, Seek, Write};
 use std::path::Path;
 
 use exr::image::write::WritableImage;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image};
+use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -182,20 +183,28 @@ fn describe_cryptomatte(attributes: &mut LayerAttributes, manifest: &Manifest, o
 /// [`Error::Io`] where it can't be opened, [`Error::Invalid`] where it is broken,
 /// [`Error::Unsupported`] for parts of different size and for subsampled channels.
 pub fn read(path: &Path) -> Result<Picture> {
-    let file = File::open(path).map_err(|source| Error::io(path, "can't read", source))?;
+    let cant_read = |source| Error::io(path, "can't read", source);
     let place = Place::file(path);
+    let broken = |error| match error {
+        exr::error::Error::Io(source) => cant_read(source),
+        exr::error::Error::NotSupported(what) => Error::unsupported(&place, format!("EXR: {what}")),
+        other => Error::invalid(&place, format!("not a sound EXR file: {other}")),
+    };
+    let mut file = BufReader::with_capacity(1 << 20, File::open(path).map_err(cant_read)?);
+    let meta = MetaData::read_from_buffered(&mut file, false).map_err(broken)?;
+    let length = file.get_ref().metadata().map_err(cant_read)?.len();
+    if !is_plausible(&meta, length) {
+        return Err(Error::invalid(&place, "not a sound EXR file: its header promises more pixels than it can hold"));
+    }
+    file.rewind().map_err(cant_read)?;
     let image = exr::image::read::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .all_layers()
         .all_attributes()
-        .from_buffered(BufReader::with_capacity(1 << 20, file))
-        .map_err(|error| match error {
-            exr::error::Error::Io(source) => Error::io(path, "can't read", source),
-            exr::error::Error::NotSupported(what) => Error::unsupported(&place, format!("EXR: {what}")),
-            other => Error::invalid(&place, format!("not a sound EXR file: {other}")),
-        })?;
+        .from_buffered(file)
+        .map_err(broken)?;
 
     let Some(first) = image.layer_data.first() else {
         return Err(Error::invalid(&place, "an EXR file without parts"));
@@ -210,6 +219,25 @@ pub fn read(path: &Path) -> Result<Picture> {
         layers.extend(from_exr_layer(part));
     }
     Ok(Picture { width: size.0 as u32, height: size.1 as u32, layers })
+}
+
+/// False where a header asks for more memory than a file of `length` bytes can fill: memory is taken by
+/// the header's word, before the first pixel is read.
+fn is_plausible(meta: &MetaData, length: u64) -> bool {
+    /// Black pictures may be tiny at any ratio.
+    const SMALL: u64 = 64 << 20;
+    /// Deflate's best ratio is 1032.
+    const RATIO: u64 = 2000;
+    /// Each chunk's entry in the table of offsets.
+    const ENTRY: u64 = 8;
+    let (mut bytes, mut chunks) = (0_u64, 0_u64);
+    for header in &meta.headers {
+        let [width, height] = [header.layer_size.0, header.layer_size.1].map(|n| n as u64);
+        let texel: u64 = header.channels.list.iter().map(|channel| channel.sample_type.bytes_per_sample() as u64).sum();
+        bytes = bytes.saturating_add(width.saturating_mul(height).saturating_mul(texel));
+        chunks = chunks.saturating_add(header.chunk_count as u64);
+    }
+    bytes <= SMALL.max(length.saturating_mul(RATIO)) && chunks <= length / ENTRY
 }
 
 /// The layers of a part: its channels grouped by what stands before the last dot.

@@ -21,13 +21,23 @@ pub(super) fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) 
     }
     let temporary = beside(&target).map_err(failed)?;
     let file = File::create_new(&temporary).map_err(failed)?;
-    let done = write(&file).and_then(|()| file.sync_all());
+    let leftover = Leftover(&temporary);
+    // Disks that fill up late, and network shares, tell so at the latest here.
+    write(&file).and_then(|()| file.sync_all()).map_err(failed)?;
     drop(file);
-    done.and_then(|()| fs::rename(&temporary, &target)).map_err(|error| {
-        // The error to tell is the first one.
-        let _ = fs::remove_file(&temporary);
-        failed(error)
-    })
+    fs::rename(&temporary, &target).map_err(failed)?;
+    std::mem::forget(leftover);
+    Ok(())
+}
+
+/// Removes the file on every way out but the good one, a panic included.
+struct Leftover<'a>(&'a Path);
+
+impl Drop for Leftover<'_> {
+    fn drop(&mut self) {
+        // Nothing helps where this fails too; the error to tell is the first one.
+        let _ = fs::remove_file(self.0);
+    }
 }
 
 /// Finds out, before hours of work, whether `path` could be written now.
