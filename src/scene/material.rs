@@ -3,18 +3,7 @@
 use super::{Interaction, Scene};
 use crate::bsdf::Surface;
 use crate::math::Rgb;
-use crate::texture::UvTransform;
-
-/// A texture as inputs use it; each distinct one is looked up at most once per point in a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextureInput {
-    /// Index of the texture.
-    pub texture: u32,
-    /// UV set of the mesh.
-    pub uv_set: u32,
-    /// Applied to the UV.
-    pub transform: UvTransform,
-}
+use crate::texture::TextureRef;
 
 /// A colour: `factor × texture`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +27,7 @@ pub struct ScalarInput {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalInput {
     /// The map.
-    pub input: TextureInput,
+    pub input: TextureRef,
     /// Factor of its x and y.
     pub scale: f32,
 }
@@ -58,7 +47,7 @@ pub enum Opacity {
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Every distinct texture that the material looks up, but for normal maps.
-    pub inputs: Vec<TextureInput>,
+    pub inputs: Vec<TextureRef>,
     /// Diffuse albedo or metallic reflectance.
     pub base_color: ColorInput,
     /// Alpha.
@@ -136,13 +125,12 @@ impl Scene {
     }
 
     /// The texture behind `input` at `it`; white where the mesh lacks the UV set.
-    pub(super) fn look_up(&self, input: TextureInput, it: &Interaction) -> [f32; 4] {
+    pub(super) fn look_up(&self, input: TextureRef, it: &Interaction) -> [f32; 4] {
         let mesh = self.mesh(&self.instances[it.instance as usize]);
         let Some(uv) = mesh.uv(input.uv_set, it.triangle, it.barycentrics) else { return [1.0; 4] };
         let uv_area = mesh.uv_area(input.uv_set, it.triangle);
         let footprint = if it.double_area > 0.0 { it.footprint * (uv_area / it.double_area).sqrt() } else { 0.0 };
-        let footprint = input.transform.footprint(footprint);
-        self.textures[input.texture as usize].lookup(input.transform.apply(uv.to_array()), footprint)
+        input.lookup(&self.textures, uv.to_array(), footprint)
     }
 
     fn lookups<'a>(&'a self, it: &'a Interaction) -> Lookups<'a> {

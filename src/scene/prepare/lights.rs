@@ -8,9 +8,9 @@ use crate::error::Warnings;
 use crate::light::{Distant, Dome, DomeImage, Emission, EmissiveTriangle, Light, MeshLight, Point, Spot};
 use crate::math::{DVec3, Rgb};
 use crate::scene::Material;
-use crate::scene::material::{ColorInput, TextureInput};
+use crate::scene::material::ColorInput;
 use crate::shape::Mesh;
-use crate::texture::Texture;
+use crate::texture::{Texture, TextureRef};
 
 /// Every emitter of the scene; instances learn which light they are.
 pub fn prepare(
@@ -116,11 +116,11 @@ struct TexturedEmission {
     mesh: Arc<Mesh>,
     textures: Arc<Vec<Texture>>,
     /// By material slot.
-    slots: Vec<(Rgb, Option<TextureInput>)>,
+    slots: Vec<(Rgb, Option<TextureRef>)>,
 }
 
 impl TexturedEmission {
-    fn slot(&self, triangle: u32) -> (Rgb, Option<TextureInput>) {
+    fn slot(&self, triangle: u32) -> (Rgb, Option<TextureRef>) {
         self.slots[self.mesh.slot(triangle).min(self.slots.len() - 1)]
     }
 
@@ -128,8 +128,7 @@ impl TexturedEmission {
         let (factor, input) = self.slot(triangle);
         let Some(input) = input else { return factor };
         let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return factor };
-        let [r, g, b, _] =
-            self.textures[input.texture as usize].lookup(input.transform.apply(uv.to_array()), footprint);
+        let [r, g, b, _] = input.lookup(&self.textures, uv.to_array(), footprint);
         factor * Rgb::new(r, g, b)
     }
 
@@ -137,7 +136,7 @@ impl TexturedEmission {
     /// brightest corner so that a triangle with any light in it is chosen now and then.
     fn mean(&self, triangle: u32) -> Rgb {
         let (_, Some(input)) = self.slot(triangle) else { return self.slot(triangle).0 };
-        let footprint = input.transform.footprint((0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt());
+        let footprint = (0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt();
         let third = 1.0 / 3.0;
         let mean = self.look_up(triangle, [third, third], footprint);
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];

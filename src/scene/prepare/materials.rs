@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureRef};
+use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc};
 use crate::error::Warnings;
 use crate::math::Rgb;
 use crate::scene::Material;
 use crate::scene::effects;
-use crate::scene::material::{ColorInput, NormalInput, Opacity, ScalarInput, TextureInput};
+use crate::scene::material::{ColorInput, NormalInput, Opacity, ScalarInput};
 use crate::settings::Settings;
-use crate::texture::{Image, Texture};
+use crate::texture::{Image, Texture, TextureRef};
 
 /// Materials as in `desc`, with the default one added at the end, and every texture of `desc` that
 /// one of them looks up. Texels move out of `desc` into the textures.
@@ -80,23 +80,23 @@ struct Textures<'a> {
 }
 
 impl Textures<'_> {
-    fn image(&self, texture: &TextureRef) -> Option<&Arc<Image>> {
+    fn image(&self, texture: &desc::TextureRef) -> Option<&Arc<Image>> {
         self.images[self.desc.textures[texture.texture as usize].image as usize].as_ref()
     }
 
     /// The one value of a texture whose texels are all the same, white for one without image.
-    fn constant(&self, texture: &TextureRef) -> Option<[f32; 4]> {
+    fn constant(&self, texture: &desc::TextureRef) -> Option<[f32; 4]> {
         let Some(image) = self.image(texture) else { return Some([1.0; 4]) };
         Texture::new(image.clone(), &self.desc.textures[texture.texture as usize]).constant()
     }
 
-    fn input(&mut self, texture: &TextureRef) -> Option<TextureInput> {
+    fn input(&mut self, texture: &desc::TextureRef) -> Option<TextureRef> {
         let image = self.image(texture)?.clone();
         let index = self.index[texture.texture as usize].get_or_insert_with(|| {
             self.list.push(Texture::new(image, &self.desc.textures[texture.texture as usize]));
             self.list.len() as u32 - 1
         });
-        Some(TextureInput { texture: *index, uv_set: texture.uv_set, transform: texture.transform.into() })
+        Some(TextureRef { texture: *index, uv_set: texture.uv_set, transform: texture.transform.into() })
     }
 }
 
@@ -107,7 +107,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn input(&mut self, inputs: &mut Vec<TextureInput>, texture: &TextureRef) -> Option<u8> {
+    fn input(&mut self, inputs: &mut Vec<TextureRef>, texture: &desc::TextureRef) -> Option<u8> {
         let input = self.textures.input(texture)?;
         let index = inputs.iter().position(|known| *known == input).unwrap_or_else(|| {
             inputs.push(input);
@@ -116,7 +116,7 @@ impl Builder<'_> {
         Some(index as u8)
     }
 
-    fn color(&mut self, inputs: &mut Vec<TextureInput>, input: &desc::ColorInput) -> ColorInput {
+    fn color(&mut self, inputs: &mut Vec<TextureRef>, input: &desc::ColorInput) -> ColorInput {
         let factor = Rgb::from(input.factor);
         let Some(texture) = input.texture.filter(|_| !factor.is_black()) else {
             return ColorInput { factor, texture: None };
@@ -127,7 +127,7 @@ impl Builder<'_> {
         }
     }
 
-    fn scalar(&mut self, inputs: &mut Vec<TextureInput>, input: &desc::ScalarInput) -> ScalarInput {
+    fn scalar(&mut self, inputs: &mut Vec<TextureRef>, input: &desc::ScalarInput) -> ScalarInput {
         let factor = input.factor as f32;
         let Some((texture, channel)) = input.texture.filter(|_| factor != 0.0) else {
             return ScalarInput { factor, texture: None };
