@@ -1,0 +1,250 @@
+//! The program end to end: exit codes, messages, files.
+
+#[path = "support/glb.rs"]
+mod glb;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use glb::Glb;
+use penumbra::output::exr;
+use serde_json::json;
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    /// Names of the files that are there.
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = std::fs::read_dir(self.0.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+fn penumbra(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_penumbra")).args(args).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// One triangle and a camera four metres in front of it; after a second the triangle has gone 24
+/// metres to the right.
+fn triangle() -> Glb {
+    let mut glb = Glb::triangle();
+    glb.push("materials", json!({"name": "Paint", "pbrMetallicRoughness": {"metallicFactor": 0}}));
+    glb.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    glb.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}));
+    glb.push("nodes", json!({"name": "Cam", "camera": 0, "translation": [0.3, 0.3, 4]}));
+    let times = glb.floats("SCALAR", &[0.0, 1.0]);
+    let places = glb.floats("VEC3", &[0.0, 0.0, 0.0, 24.0, 0.0, 0.0]);
+    let channel = json!({"sampler": 0, "target": {"node": 0, "path": "translation"}});
+    glb.push("animations", json!({"channels": [channel], "samplers": [{"input": times, "output": places}]}));
+    glb
+}
+
+#[test]
+fn renders_every_pass_to_parts_named_as_blender_names_them() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let (out, png) = (folder.path("out.exr"), folder.path("out.png"));
+    let args = ["render", text(&scene), "-o", text(&out), "--preview", text(&png), "--size", "32x24", "--spp", "2"];
+    let output = penumbra(&[&args[..], &["--passes", "all", "--progress", "none"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no light in the scene"), "{}", stderr(&output));
+    let picture = exr::read(&out).unwrap();
+    assert_eq!((picture.width, picture.height), (32, 24));
+    for pass in penumbra::film::PASSES {
+        let found = picture.layers.iter().any(|layer| layer.name.starts_with(&format!("ViewLayer.{}", pass.layer)));
+        assert!(found, "{} is missing", pass.layer);
+    }
+    let depth = picture.layer("Depth").unwrap();
+    assert_eq!(depth.pixel(32, 0, 0), [1e10]);
+    assert!((depth.pixel(32, 16, 12)[0] - 4.0).abs() < 1e-4);
+    assert_eq!(&std::fs::read(&png).unwrap()[..4], b"\x89PNG");
+    assert_eq!(folder.names(), ["out.exr", "out.png", "tri.glb"]);
+}
+
+#[test]
+fn the_same_command_gives_the_same_pixels_on_any_number_of_threads() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let render = |name: &str, threads: &str, seed: &str| {
+        let out = folder.path(name);
+        let args = ["render", text(&scene), "-o", text(&out), "--size", "33x17", "--spp", "5", "--threads", threads];
+        assert!(penumbra(&[&args[..], &["--seed", seed]].concat()).status.success());
+        exr::read(&out).unwrap()
+    };
+    let one = render("a.exr", "1", "7");
+    assert_eq!(one, render("b.exr", "4", "7"));
+    assert_ne!(one, render("c.exr", "4", "8"));
+}
+
+#[test]
+fn frames_are_numbered_and_move() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("f.exr");
+    let args = ["render", text(&scene), "-o", text(&out), "--frames", "0-24x24", "--size", "16x16", "--spp", "1"];
+    assert!(penumbra(&args).status.success());
+    let depth = |name: &str| exr::read(&folder.path(name)).unwrap().layers[0].data.clone();
+    // After a second the triangle has gone 24 m to the right.
+    assert_ne!(depth("f.0000.exr"), depth("f.0024.exr"));
+    assert!(depth("f.0024.exr").iter().all(|v| *v == 0.0));
+}
+
+#[test]
+fn a_time_limit_is_kept() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("t.exr");
+    let start = Instant::now();
+    let output = penumbra(&["render", text(&scene), "-o", text(&out), "--size", "64x64", "--time", "1"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!((Duration::from_secs(1)..Duration::from_secs(8)).contains(&start.elapsed()), "{:?}", start.elapsed());
+}
+
+#[test]
+fn bad_input_gets_one_clear_error_that_names_the_file() {
+    let folder = Folder::new();
+    let good = folder.write("good.glb", triangle().bytes());
+    let out = folder.path("out.exr");
+    let whole = triangle().bytes();
+    let truncated = folder.write("cut.glb", &whole[..whole.len() / 2]);
+    let changed = |name: &str, change: &dyn Fn(&mut serde_json::Value)| {
+        let mut glb = triangle();
+        change(&mut glb.json);
+        folder.write(name, glb.bytes())
+    };
+    let loops = changed("loop.glb", &|json| json["nodes"][0]["children"] = json!([0]));
+    let range = changed("range.glb", &|json| json["bufferViews"][0]["byteLength"] = json!(999_999));
+    let needs = changed("needs.glb", &|json| json["extensionsRequired"] = json!(["EXT_of_the_future"]));
+    let no_json = folder.write("x.gltf", "{ not json");
+    let no_scene = folder.write("x.abc", "?");
+    let no_usd = folder.write("x.usda", "#usda 1.0");
+    let no_sky = folder.write("bad.hdr", "#?RADIANCE\nrubbish");
+    let cases: [(&[&str], &str); 11] = [
+        (&["/no/such/scene.glb"], "/no/such/scene.glb"),
+        (&[text(&truncated)], "cut.glb"),
+        (&[text(&range)], "range.glb"),
+        (&[text(&needs)], "EXT_of_the_future"),
+        (&[text(&no_json)], "x.gltf"),
+        (&[text(&no_scene)], "x.abc"),
+        (&[text(&no_usd)], "x.usda"),
+        (&[text(&good), "--camera", "Nobody"], "Cam"),
+        (&[text(&good), "--environment", "/no/sky.hdr"], "/no/sky.hdr"),
+        (&[text(&good), "--environment", text(&no_sky)], "bad.hdr"),
+        (&[text(&good), "--variant", "Gold"], "Gold"),
+    ];
+    for (args, named) in cases {
+        let output = penumbra(&[&["render"], args, &["-o", text(&out), "--size", "8x8", "--spp", "1"]].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {message}");
+        assert!(message.starts_with("error: ") && message.contains(named), "{args:?}: {message}");
+        assert!(!message.contains("panicked") && !out.exists(), "{args:?}: {message}");
+    }
+    // A loop among nodes is cut or refused, and told of either way.
+    let output = penumbra(&["render", text(&loops), "-o", text(&out), "--size", "8x8", "--spp", "1"]);
+    assert!(stderr(&output).contains("loop.glb") && !stderr(&output).contains("panicked"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_found_before_the_render() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    for out in ["/no/such/folder/out.exr", "/dev/full", folder.0.path().to_str().unwrap()] {
+        let start = Instant::now();
+        let output = penumbra(&["render", text(&scene), "-o", out, "--spp", "100000"]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(stderr(&output).contains(out) && stderr(&output).contains("can't write"), "{}", stderr(&output));
+        assert!(start.elapsed() < Duration::from_secs(10));
+    }
+}
+
+#[test]
+fn mistakes_on_the_command_line_are_exit_code_two() {
+    let cases: [&[&str]; 9] = [
+        &[],
+        &["render"],
+        &["render", "x.glb"],
+        &["render", "x.glb", "-o", "o.exr", "--size", "0x540"],
+        &["render", "x.glb", "-o", "o.exr", "--spp", "0"],
+        &["render", "x.glb", "-o", "o.exr", "--passes", "beauty"],
+        &["render", "x.glb", "-o", "o.exr", "--filter", "box:wide"],
+        &["render", "x.glb", "-o", "o.exr", "--integrator", "magic"],
+        &["paint", "x.glb"],
+    ];
+    for args in cases {
+        let output = penumbra(args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {}", stderr(&output));
+    }
+    assert!(stderr(&penumbra(cases[5])).contains("combined"), "lists the passes that there are");
+}
+
+#[test]
+fn strict_takes_warnings_for_errors() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("out.exr");
+    let output = penumbra(&["render", text(&scene), "-o", text(&out), "--strict"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("--strict") && !out.exists());
+}
+
+#[test]
+fn info_says_what_was_read() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let plain = penumbra(&["info", text(&scene)]);
+    let plain = String::from_utf8_lossy(&plain.stdout).into_owned();
+    assert!(plain.contains("Paint") && plain.contains("Cam"), "{plain}");
+    let json = penumbra(&["info", text(&scene), "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!((&json["triangles"], &json["instances"]), (&1.into(), &1.into()));
+    assert_eq!(json["cameras"][0]["fov_y_deg"].as_f64().unwrap().round(), 46.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_saves_what_is_there() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("out.exr");
+    let args =
+        ["render", text(&scene), "-o", text(&out), "--size", "200x200", "--spp", "1000000", "--progress", "json"];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_penumbra")).args(args).stderr(Stdio::piped()).spawn().unwrap();
+    // The first line of progress tells that samples are being taken.
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().unwrap()));
+    let progress = lines.find(|line| line.as_ref().unwrap().starts_with('{')).unwrap().unwrap();
+    let progress: serde_json::Value = serde_json::from_str(&progress).unwrap();
+    assert_eq!(progress["target_spp"], 1_000_000);
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let rest: Vec<String> = lines.map(|line| line.unwrap()).collect();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(rest.iter().any(|line| line.contains("interrupted") && line.contains("out.exr")), "{rest:?}");
+    let picture = exr::read(&out).unwrap();
+    assert!(picture.layer("Combined").unwrap().data.iter().any(|v| *v > 0.0));
+}
