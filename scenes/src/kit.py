@@ -295,6 +295,19 @@ def write_glb(path, doc, blob):
     pathlib.Path(path).write_bytes(head + chunks)
 
 
+def make_solid(path, names):
+    """Gives materials an inside (`KHR_materials_volume`), which the exporter writes for no Principled node.
+
+    Without it a transmissive surface is an infinitely thin sheet by glTF's rules, and bends no light.
+    """
+    doc, blob = read_glb(path)
+    for made in doc["materials"]:
+        if made["name"] in names:
+            made["extensions"]["KHR_materials_volume"] = {"thicknessFactor": 0.003}
+    doc["extensionsUsed"] = sorted({*doc["extensionsUsed"], "KHR_materials_volume"})
+    write_glb(path, doc, blob)
+
+
 def add_instances(path, crowds):
     """Turns the nodes named in `crowds` into EXT_mesh_gpu_instancing nodes of an exported .glb.
 

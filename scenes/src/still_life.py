@@ -240,3 +240,4 @@ def build(out, folder):
     kit.quad_light("Fill", (0.9, -1.6, 1.3), (0.0, 0.1, 0.1), (1.4, 1.0), (0.75, 0.85, 1.0), 0.5)
     kit.camera((0.06, -1.62, 0.50), (0.005, 0.0, 0.094), 60)
     kit.export(out / "still_life.glb")
+    kit.make_solid(out / "still_life.glb", {"Glass"})
