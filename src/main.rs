@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! The command line: `penumbra render SCENE -o OUT.exr`.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

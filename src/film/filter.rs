@@ -14,6 +14,7 @@
 //! width of Blackman-Harris and triangle; four sigmas of the Gaussian; box is always one pixel wide.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 /// A row of [`FILTERS`].
 #[derive(Debug)]
@@ -55,7 +56,7 @@ pub static FILTERS: &[FilterRow] = &[
 const CELLS: usize = 1024;
 
 /// A filter ready to draw from.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
     name: &'static str,
     shape: Shape,
@@ -68,6 +69,17 @@ pub struct Filter {
     cdf: Vec<f32>,
     /// For each of [`CELLS`] equal ranges of u, the cell where the search for u begins.
     guide: Vec<u16>,
+}
+
+impl fmt::Display for Filter {
+    /// As [`Filter::parse`] takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.shape {
+            Shape::Box => f.write_str(self.name),
+            Shape::Gaussian => write!(f, "{}:{}", self.name, self.radius / 1.5),
+            _ => write!(f, "{}:{}", self.name, self.radius),
+        }
+    }
 }
 
 impl Default for Filter {

@@ -5,7 +5,7 @@
 //! `Combined = Σ Color × (Direct + Indirect) + Emission + Environment` (Cycles' convention), and
 //! `Diffuse Direct = Shadow × Diffuse Direct Unshadowed`.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 use super::cryptomatte::CryptoKind;
 use super::quantity::{Quantities, Quantity};
@@ -189,6 +189,14 @@ fn vector([x, y, z]: [f32; 3]) -> [f64; 4] {
 pub struct PassSet {
     chosen: Vec<bool>,
     quantities: Quantities,
+}
+
+impl fmt::Display for PassSet {
+    /// As [`PassSet::parse`] takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.iter().map(|pass| pass.name).collect();
+        f.write_str(&names.join(","))
+    }
 }
 
 impl Default for PassSet {

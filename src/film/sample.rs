@@ -13,6 +13,14 @@ pub struct Split {
     pub transmission: Rgb,
 }
 
+impl std::ops::AddAssign for Split {
+    fn add_assign(&mut self, other: Self) {
+        self.diffuse += other.diffuse;
+        self.glossy += other.glossy;
+        self.transmission += other.transmission;
+    }
+}
+
 /// Cryptomatte identifiers of what a camera path saw, each a hash as float bits; see
 /// [`id_from_name`](super::cryptomatte::id_from_name). An id of 0 is nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,1 +1,59 @@
 //! Files in: each door fills a `SceneDesc` and `Warnings`, nothing else.
+
+mod exr_image;
+pub mod gltf;
+pub mod image;
+
+use std::path::Path;
+
+use crate::desc::SceneDesc;
+use crate::error::{Error, Place, Result, Warnings};
+
+pub use image::{decode_image, load_image};
+
+/// What the intensities of a glTF file's lights mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightUnits {
+    /// Candela and lux, as the extension says; 1 W is 683 lm.
+    #[default]
+    Spec,
+    /// W·sr⁻¹ and W·m⁻² (Blender's "Unitless").
+    Compat,
+    /// W for points and spots, W·m⁻² for the sun (Blender's "Raw").
+    Raw,
+}
+
+/// How to read a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportOptions {
+    /// The frame at which animation is evaluated, frame 0 at time 0. `None` for the pose that the
+    /// file's nodes were authored in, without animation.
+    pub frame: Option<f64>,
+    /// Frames per second, for files that count time in seconds.
+    pub fps: f64,
+    /// Name of the material variant to show; `None` for the file's own materials.
+    pub variant: Option<String>,
+    /// Units of the lights of glTF files.
+    pub light_units: LightUnits,
+}
+
+impl Default for ImportOptions {
+    fn default() -> Self {
+        Self { frame: None, fps: 24.0, variant: None, light_units: LightUnits::Spec }
+    }
+}
+
+/// Reads the scene at `path`, by its extension.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other extensions, and what the door for the extension says.
+pub fn scene(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Result<SceneDesc> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match extension.as_str() {
+        "gltf" | "glb" => gltf::load(path, options, warnings),
+        "usd" | "usda" | "usdc" | "usdz" => {
+            Err(Error::unsupported(&Place::file(path), "USD is not read yet; .gltf and .glb files are"))
+        }
+        _ => Err(Error::unsupported(&Place::file(path), "not a scene that can be read; .gltf and .glb files are")),
+    }
+}

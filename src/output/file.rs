@@ -40,6 +40,19 @@ impl Drop for Leftover<'_> {
     }
 }
 
+/// Finds out, before hours of work, whether `path` could be written now.
+///
+/// # Errors
+/// As [`replace`] would give.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let failed = |source| Error::io(path, "can't write", source);
+    if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+        return Err(failed(io::Error::other("it is there and is not a regular file")));
+    }
+    let probe = beside(&fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())).map_err(failed)?;
+    File::create_new(&probe).and_then(|_| fs::remove_file(&probe)).map_err(failed)
+}
+
 /// A name in the same folder that no other writer, in this process or another, takes.
 fn beside(path: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -87,6 +100,7 @@ mod tests {
             replace(&path, |mut file| file.write_all(text.as_bytes())).expect("write");
             assert_eq!(fs::read_to_string(&path).expect("read"), text);
         }
+        check_writable(&path).expect("writable");
         assert_eq!(names(folder.path()), ["out.png"]);
     }
 
@@ -96,6 +110,7 @@ mod tests {
         for path in [folder.path().to_owned(), folder.path().join("no/such/out.exr"), "/".into(), "/dev/full".into()] {
             let error = replace(&path, |_| Ok(())).expect_err("refused");
             assert!(error.to_string().contains(&*path.to_string_lossy()), "{error}");
+            assert_eq!(check_writable(&path).expect_err("refused").to_string(), error.to_string());
         }
         assert!(names(folder.path()).is_empty());
     }

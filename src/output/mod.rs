@@ -5,4 +5,5 @@ mod file;
 mod metadata;
 pub mod png;
 
+pub use file::check_writable;
 pub use metadata::Metadata;

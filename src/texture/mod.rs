@@ -9,4 +9,5 @@ mod transform;
 
 pub use image::Image;
 pub use lookup::Texture;
-pub use transform::{TextureRef, UvTransform};
+pub use srgb::decode as srgb_to_linear;
+pub use transform::UvTransform;

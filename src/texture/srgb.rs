@@ -7,7 +7,7 @@ pub(super) static DECODE_U8: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| decode_f64(code as f64 / 255.0) as f32));
 
 /// Linear value of an sRGB-encoded one; odd about 0, so that negative values of float images stay.
-pub(super) fn decode(encoded: f32) -> f32 {
+pub fn decode(encoded: f32) -> f32 {
     decode_f64(f64::from(encoded)) as f32
 }
 

@@ -1,0 +1,1 @@
+"""The shipped scenes, one module each, and what they share."""

@@ -1,0 +1,190 @@
+//! The lower level: the triangles of one mesh in object space.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use super::buffer::Buffer;
+use super::build::{self, LeafRule, Primitive};
+use super::node::{BLOCK, Block, Link, Node};
+use super::ray::RaySetup;
+use super::simd::Simd;
+use super::triangle::{self, Best};
+use super::walk::walk;
+use crate::math::{Bounds, DVec3, Vec3};
+
+/// Coordinates beyond this, 2^60, count as not finite: squares of their differences must not
+/// overflow in the triangle test.
+const LARGEST: f32 = (1_u64 << 60) as f32;
+
+/// Bounds of a triangle grow by this much of its largest extent, for the rounding of the triangle
+/// test, which may find a hit that lies this far beside the triangle.
+const MARGIN: f32 = 4.0 * f32::EPSILON;
+
+/// The triangles of one mesh in object space, ready to be instanced in a [`super::Bvh`].
+pub struct Blas {
+    nodes: Buffer<Node>,
+    blocks: Buffer<Block>,
+    root: Link,
+    bounds: Bounds,
+    len: usize,
+}
+
+impl Blas {
+    const RULE: LeafRule = LeafRule { block: BLOCK, max: 2 * BLOCK, cost: 1.0 };
+
+    /// Builds the tree over `triangles`, which index `points`; all indices must be in range.
+    ///
+    /// Triangles without area and those with a coordinate that is not finite or beyond 2^60 are
+    /// left out: they are never hit. The tree is the same for any number of threads.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn build(points: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let mut primitives: Vec<Primitive> = triangles
+            .par_iter()
+            .enumerate()
+            .filter_map(|(index, t)| Some(Primitive::new(triangle_bounds(corners(points, *t))?, index as u32)))
+            .collect();
+        let wide = build::build(&mut primitives, Self::RULE);
+        let mut blocks = Buffer::zeroed(wide.items.len());
+        blocks.par_iter_mut().zip(&wide.items).with_min_len(1024).for_each(|(block, &(first, count))| {
+            let range = &primitives[first as usize..][..count as usize];
+            *block = fill_block(range.iter().map(|p| (p.index, corners(points, triangles[p.index as usize]))));
+        });
+        Self { nodes: wide.nodes, blocks, root: wide.root, bounds: wide.bounds, len: primitives.len() }
+    }
+
+    /// The box of all triangles that can be hit, in object space; empty if there are none.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Memory held, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.nodes.bytes() + self.blocks.bytes()
+    }
+
+    /// Number of triangles that can be hit.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True where no triangle can be hit.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// A hash of the whole tree, for tests that two builds are the same.
+    pub fn digest(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.root.0.hash(&mut hasher);
+        for node in self.nodes.iter() {
+            node.planes.as_flattened().iter().for_each(|v| v.to_bits().hash(&mut hasher));
+            node.children.iter().for_each(|link| link.0.hash(&mut hasher));
+        }
+        for block in self.blocks.iter() {
+            block.vertices.as_flattened().as_flattened().iter().for_each(|v| v.to_bits().hash(&mut hasher));
+            block.triangles.hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+
+    /// Boxes that together hold all triangles, tighter than the one of [`Blas::bounds`].
+    pub(super) fn outline(&self) -> Vec<Bounds> {
+        let children = |node: &Node| {
+            let node = *node;
+            (0..node.children.len()).map(move |i| (node.bounds(i), node.children[i])).filter(|(b, _)| !b.is_empty())
+        };
+        if self.root.is_leaf() {
+            return vec![self.bounds];
+        }
+        let mut boxes = Vec::new();
+        for (bounds, link) in children(&self.nodes[self.root.index()]) {
+            if link.is_leaf() {
+                boxes.push(bounds);
+            } else {
+                boxes.extend(children(&self.nodes[link.index()]).map(|(bounds, _)| bounds));
+            }
+        }
+        boxes
+    }
+
+    /// Updates `best` with the nearest hit of a ray in object space.
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[inline(always)]
+    pub(super) unsafe fn closest<S: Simd>(&self, ray: &RaySetup, instance: u32, best: &mut Best) {
+        let blocks = self.blocks.as_ptr();
+        let leaf = |best: &mut Best, link: Link| {
+            let (first, count) = link.items();
+            for i in first..first + count {
+                // SAFETY: links are made by the builder together with the blocks.
+                unsafe { triangle::closest::<S::F4>(&*blocks.add(i), ray, instance, best) };
+            }
+            ControlFlow::Continue(())
+        };
+        // SAFETY: the builder's links and depth; the instruction set by contract.
+        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, ray, best, |best| best.t, leaf) };
+    }
+
+    /// True where a ray in object space hits anything at `0 <= t < t_max`.
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[inline(always)]
+    pub(super) unsafe fn any<S: Simd>(&self, ray: &RaySetup, t_max: f32) -> bool {
+        let blocks = self.blocks.as_ptr();
+        let mut found = false;
+        let leaf = |found: &mut bool, link: Link| {
+            let (first, count) = link.items();
+            for i in first..first + count {
+                // SAFETY: as above.
+                if unsafe { triangle::any::<S::F4>(&*blocks.add(i), ray, t_max) } {
+                    *found = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        };
+        // SAFETY: as above.
+        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, ray, &mut found, |_| t_max, leaf) };
+        found
+    }
+}
+
+fn corners(points: &[Vec3], triangle: [u32; 3]) -> [Vec3; 3] {
+    triangle.map(|i| points[i as usize])
+}
+
+/// The box of a triangle, with a margin; `None` for one that can't be hit.
+fn triangle_bounds(corners: [Vec3; 3]) -> Option<Bounds> {
+    let bounds = Bounds::of_points(corners);
+    let in_range = corners.iter().all(|p| p.abs().cmple(Vec3::splat(LARGEST)).all());
+    if !in_range || !has_area(corners) {
+        return None;
+    }
+    let margin = bounds.extent().max_element() * MARGIN;
+    let grown = Bounds { min: bounds.min - margin, max: bounds.max + margin };
+    Some(grown)
+}
+
+fn has_area([a, b, c]: [Vec3; 3]) -> bool {
+    let (a, b, c): (DVec3, DVec3, DVec3) = (a.into(), b.into(), c.into());
+    (b - a).cross(c - a) != DVec3::ZERO
+}
+
+fn fill_block(triangles: impl Iterator<Item = (u32, [Vec3; 3])>) -> Block {
+    let mut block = Block::EMPTY;
+    for (lane, (index, corners)) in triangles.enumerate() {
+        for (vertex, p) in block.vertices.iter_mut().zip(corners) {
+            for (axis, lanes) in vertex.iter_mut().enumerate() {
+                lanes[lane] = p[axis];
+            }
+        }
+        block.triangles[lane] = index;
+    }
+    block
+}

@@ -1,0 +1,75 @@
+//! The whole traversal compiled once per instruction set, so that nothing crosses a call boundary
+//! in the hot loop.
+
+use super::Hit;
+use super::isa::Isa;
+use super::ray::{is_plain, rescaled};
+use super::simd;
+use super::top::Tree;
+use super::triangle::Best;
+use crate::math::Ray;
+
+/// The queries for one instruction set.
+pub(super) struct Kernel {
+    pub isa: Isa,
+    closest: unsafe fn(&Tree, &Ray, u32) -> Best,
+    any: unsafe fn(&Tree, &Ray, u32) -> bool,
+}
+
+/// Compiles both queries for an instruction set.
+macro_rules! kernel {
+    ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
+        $(#[target_feature(enable = $features)])?
+        unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u32) -> Best {
+            // SAFETY: the features are enabled here.
+            unsafe { tree.closest::<$simd>(ray, mask) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u32) -> bool {
+            // SAFETY: the features are enabled here.
+            unsafe { tree.any::<$simd>(ray, mask) }
+        }
+        static $name: Kernel = Kernel { isa: $isa, closest: closest_hit, any: any_hit };
+        &$name
+    }};
+}
+
+impl Kernel {
+    /// The code for `isa`, which must be available; the scalar one for a foreign architecture's.
+    pub fn of(isa: Isa) -> &'static Self {
+        debug_assert!(Isa::available().contains(&isa));
+        match isa {
+            #[cfg(target_arch = "x86_64")]
+            Isa::Sse2 => kernel!(SSE2, Isa::Sse2, simd::Sse2),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => kernel!(AVX2, Isa::Avx2, simd::Avx2, "avx2,bmi1,bmi2,lzcnt,popcnt"),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => kernel!(AVX512, Isa::Avx512, simd::Avx512, "avx512f,avx512vl,avx2,bmi1,bmi2,lzcnt,popcnt"),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => kernel!(NEON, Isa::Neon, simd::Neon),
+            _ => kernel!(SCALAR, Isa::Scalar, simd::Scalar),
+        }
+    }
+
+    /// See [`super::Bvh::closest_hit`].
+    #[inline]
+    pub fn closest(&self, tree: &Tree, ray: &Ray, mask: u32) -> Option<Hit> {
+        if !is_plain(ray) {
+            let (scaled, power) = rescaled(ray)?;
+            return self.closest(tree, &scaled, mask).map(|hit| Hit { t: hit.t * power, ..hit });
+        }
+        // SAFETY: only available kernels are handed out.
+        let Best { t, u, v, instance, triangle } = unsafe { (self.closest)(tree, ray, mask) };
+        (triangle != Best::NONE).then_some(Hit { t, u, v, instance, triangle })
+    }
+
+    /// See [`super::Bvh::any_hit`].
+    #[inline]
+    pub fn any(&self, tree: &Tree, ray: &Ray, mask: u32) -> bool {
+        if !is_plain(ray) {
+            return rescaled(ray).is_some_and(|(scaled, _)| self.any(tree, &scaled, mask));
+        }
+        // SAFETY: as above.
+        unsafe { (self.any)(tree, ray, mask) }
+    }
+}

@@ -1,0 +1,56 @@
+//! The acceleration structure: what does a ray hit?
+//!
+//! Two levels: a [`Blas`] holds the triangles of one mesh in object space, a [`Bvh`] places
+//! instances of them. Both are trees of 8-wide nodes (`node.rs`) built by the surface area
+//! heuristic (`build/`) and walked by code that is compiled per instruction set and chosen at run
+//! time (`kernel.rs`, [`Isa`]); all of them, the scalar one included, give the same bits. The
+//! triangle test is watertight (`triangle.rs`). Spheres, disks and curves would be further kinds of
+//! leaf items beside the blocks of triangles, motion a further kind of node.
+//!
+//! This and the foreign-function files are the only places of `unsafe` in the crate; the interface is safe.
+
+#![allow(unsafe_code)]
+
+mod blas;
+mod buffer;
+mod build;
+mod isa;
+mod kernel;
+mod node;
+mod ray;
+mod simd;
+mod top;
+mod triangle;
+mod walk;
+
+pub use blas::Blas;
+pub use isa::Isa;
+pub use top::Bvh;
+
+use crate::math::Affine3A;
+
+/// A mesh placed in render space.
+#[derive(Clone, Copy, Debug)]
+pub struct Instance {
+    /// Index of the mesh in the list given to [`Bvh::build`].
+    pub blas: u32,
+    /// From object to render space.
+    pub object_to_render: Affine3A,
+    /// A ray sees the instance if its own mask shares a bit with this one.
+    pub mask: u32,
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance in lengths of the ray's direction.
+    pub t: f32,
+    /// Weight of the second vertex: `p = (1 - u - v) p0 + u p1 + v p2`.
+    pub u: f32,
+    /// Weight of the third vertex.
+    pub v: f32,
+    /// Index in the list of instances given to [`Bvh::build`].
+    pub instance: u32,
+    /// Index in the list of triangles given to [`Blas::build`].
+    pub triangle: u32,
+}

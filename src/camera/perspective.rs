@@ -1,0 +1,64 @@
+//! Straight lines through one point.
+
+use super::{CameraRay, View};
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perspective {
+    /// Where it stands.
+    pub view: View,
+    /// Tangent of half the field of view across the picture.
+    pub tan_half_x: f32,
+    /// Tangent of half the field of view from bottom to top.
+    pub tan_half_y: f32,
+    /// Size of the picture in pixels.
+    pub size: [f32; 2],
+}
+
+impl Perspective {
+    /// See [`super::Camera::ray`].
+    pub fn ray(&self, x: f32, y: f32) -> CameraRay {
+        let view = &self.view;
+        let sx = (2.0 * x / self.size[0] - 1.0) * self.tan_half_x;
+        let sy = (1.0 - 2.0 * y / self.size[1]) * self.tan_half_y;
+        let d = (view.forward + view.right * sx + view.up * sy).normalize();
+        let ray = view.clipped(view.origin, d);
+        let spread = 2.0 * self.tan_half_y / self.size[1] * d.dot(view.forward);
+        CameraRay { ray, width: spread * (ray.o - view.origin).length(), spread }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    fn camera() -> Perspective {
+        let view = View {
+            origin: Vec3::new(0.0, 0.0, 5.0),
+            right: Vec3::X,
+            up: Vec3::Y,
+            forward: Vec3::NEG_Z,
+            clip_near: 0.5,
+            clip_far: 10.0,
+        };
+        Perspective { view, tan_half_x: 1.0, tan_half_y: 0.5, size: [200.0, 100.0] }
+    }
+
+    #[test]
+    fn the_corners_of_the_picture_are_those_of_the_field_of_view() {
+        let camera = camera();
+        let middle = camera.ray(100.0, 50.0).ray;
+        assert_eq!((middle.d, middle.o), (Vec3::NEG_Z, Vec3::new(0.0, 0.0, 4.5)));
+        let corner = camera.ray(0.0, 0.0).ray.d;
+        assert!((corner / -corner.z - Vec3::new(-1.0, 0.5, -1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn clip_planes_are_planes() {
+        let camera = camera();
+        let ray = camera.ray(13.0, 81.0).ray;
+        assert!((camera.view.depth(ray.o) - 0.5).abs() < 1e-5);
+        assert!((camera.view.depth(ray.at(ray.t_max)) - 10.0).abs() < 1e-4);
+    }
+}

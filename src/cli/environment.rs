@@ -1,0 +1,55 @@
+//! `--environment`: a dome from an image file, for any scene.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use clap::{Arg, ArgMatches, value_parser};
+
+use penumbra::desc::{ColorSpace, ImageDesc, SceneDesc, WorldDesc, WorldImage};
+use penumbra::error::Place;
+use penumbra::import::image::load_image;
+
+pub fn args() -> [Arg; 3] {
+    let number =
+        |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(f64)).allow_negative_numbers(true);
+    [
+        Arg::new("environment")
+            .long("environment")
+            .value_name("FILE")
+            .value_parser(value_parser!(PathBuf))
+            .help("Light the scene by this lat-long image (.hdr, .exr, ...) instead of its own world"),
+        number("environment-rotation")
+            .value_name("DEG")
+            .default_value("0")
+            .help("Turn it about the up axis, counter-clockwise seen from above"),
+        number("environment-strength").value_name("S").default_value("1").help("Multiply its radiance"),
+    ]
+}
+
+/// Replaces the world of `scene` as `args` ask.
+pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
+    let Some(path) = args.get_one::<PathBuf>("environment") else { return Ok(()) };
+    let number = |name: &str| *args.get_one::<f64>(name).expect("has a default");
+    let (rotation, strength) = (number("environment-rotation"), number("environment-strength"));
+    if !(rotation.is_finite() && strength.is_finite() && strength >= 0.0) {
+        bail!("--environment-rotation and --environment-strength must be finite, the strength not negative");
+    }
+    let image: ImageDesc = load_image(path, color_space(path)).context("can't use --environment")?;
+    scene.images.push(image);
+    scene.world = Some(WorldDesc {
+        place: Place::file(path.clone()),
+        radiance: [strength; 3],
+        image: Some(WorldImage { image: scene.images.len() as u32 - 1, rotation }),
+        visible: true,
+    });
+    Ok(())
+}
+
+/// Float formats hold linear radiance, the others what a screen shows.
+fn color_space(path: &std::path::Path) -> ColorSpace {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("hdr" | "pic" | "exr") => ColorSpace::Linear,
+        _ => ColorSpace::Srgb,
+    }
+}

@@ -1,0 +1,169 @@
+//! `penumbra info`: what was read from a scene.
+
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use penumbra::desc::{LightKind, ProjectionDesc, SceneDesc};
+use penumbra::error::Warnings;
+use serde_json::{Value, json};
+
+use super::Outcome;
+
+pub fn command() -> Command {
+    Command::new("info")
+        .about("Show what a scene holds: meshes, instances, materials, cameras, lights with their units")
+        .args(super::scene::args())
+        .arg(
+            Arg::new("frame")
+                .long("frame")
+                .value_name("F")
+                .value_parser(clap::value_parser!(f64))
+                .help("Frame to read"),
+        )
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
+}
+
+pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
+    let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied())?;
+    let info = describe(&scene, &warnings);
+    if args.get_flag("json") {
+        println!("{info:#}");
+    } else {
+        print(&info);
+    }
+    Ok(Outcome::Done)
+}
+
+/// Everything that both forms of the report say.
+fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
+    let triangles = |mesh: u32| scene.meshes[mesh as usize].triangles.len();
+    let mut users = vec![0_u64; scene.meshes.len()];
+    for instance in &scene.instances {
+        users[instance.mesh as usize] += 1;
+    }
+    let meshes: Vec<Value> = scene
+        .meshes
+        .iter()
+        .zip(&users)
+        .map(|(mesh, users)| {
+            json!({
+                "name": &*mesh.name,
+                "points": mesh.points.len(),
+                "triangles": mesh.triangles.len(),
+                "normals": mesh.normals.is_some(),
+                "uv_sets": mesh.uvs.len(),
+                "tangents": mesh.tangents.is_some(),
+                "colors": mesh.colors.is_some(),
+                "instances": users,
+            })
+        })
+        .collect();
+    json!({
+        "scene": scene.place.to_string(),
+        "triangles": scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>(),
+        "instanced_triangles": scene.instances.iter().map(|i| triangles(i.mesh)).sum::<usize>(),
+        "meshes": meshes,
+        "instances": scene.instances.len(),
+        "materials": scene.materials.iter().map(|m| json!({ "name": &*m.name })).collect::<Vec<_>>(),
+        "textures": scene.textures.len(),
+        "images": scene.images.iter().map(|image| json!({
+            "name": &*image.name,
+            "size": [image.width, image.height],
+            "channels": image.channels,
+            "bytes": image.pixels.bytes(),
+        })).collect::<Vec<_>>(),
+        "cameras": scene.cameras.iter().map(|camera| {
+            let mut value = json!({ "name": &*camera.name, "node": camera.place.node.as_deref() });
+            match camera.projection {
+                ProjectionDesc::Perspective { fov_y, aspect } => {
+                    value["fov_y_deg"] = json!(fov_y.to_degrees());
+                    value["aspect"] = json!(aspect);
+                }
+                ProjectionDesc::Orthographic { half_width, half_height } => {
+                    value["size_m"] = json!([2.0 * half_width, 2.0 * half_height]);
+                }
+            }
+            value
+        }).collect::<Vec<_>>(),
+        "lights": scene.lights.iter().map(|light| {
+            let (kind, value, unit) = match light.kind {
+                LightKind::Point { intensity, .. } => ("point", intensity, "W/sr"),
+                LightKind::Spot { intensity, .. } => ("spot", intensity, "W/sr"),
+                LightKind::Distant { irradiance, .. } => ("distant", irradiance, "W/m2"),
+            };
+            json!({ "name": &*light.name, "kind": kind, "value": value, "unit": unit })
+        }).collect::<Vec<_>>(),
+        "emissive_materials": scene.materials.iter()
+            .filter(|m| !m.unlit && m.emission_strength > 0.0 && m.emission.factor.iter().any(|&c| c > 0.0))
+            .map(|m| json!({
+                "name": &*m.name,
+                "value": m.emission.factor.map(|c| c * m.emission_strength),
+                "textured": m.emission.texture.is_some(),
+                "unit": "W/(m2 sr)",
+            }))
+            .collect::<Vec<_>>(),
+        "variants": scene.variants,
+        "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
+}
+
+fn print(info: &Value) {
+    let list = |key: &str| info[key].as_array().cloned().unwrap_or_default();
+    println!("{}", info["scene"].as_str().unwrap_or_default());
+    println!(
+        "  {} triangles in {} meshes, {} when instanced by {} instances",
+        info["triangles"],
+        list("meshes").len(),
+        info["instanced_triangles"],
+        info["instances"]
+    );
+    for mesh in list("meshes") {
+        println!(
+            "  mesh {}: {} points, {} triangles, {} instances",
+            mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]
+        );
+    }
+    let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
+    println!("  {} materials: {}", names.len(), names.join(", "));
+    for image in list("images") {
+        println!(
+            "  image {}: {}x{}, {} channels, {} bytes",
+            image["name"], image["size"][0], image["size"][1], image["channels"], image["bytes"]
+        );
+    }
+    for camera in list("cameras") {
+        let lens = camera.get("fov_y_deg").map_or_else(
+            || format!("orthographic, {} x {} m", camera["size_m"][0], camera["size_m"][1]),
+            |fov| format!("perspective, {:.2} degrees from bottom to top", fov.as_f64().unwrap_or_default()),
+        );
+        println!("  camera {}: {lens}", camera["name"]);
+    }
+    for light in list("lights") {
+        println!(
+            "  {} light {}: {} {}",
+            light["kind"].as_str().unwrap_or_default(),
+            light["name"],
+            numbers(&light["value"]),
+            light["unit"].as_str().unwrap_or_default()
+        );
+    }
+    for material in list("emissive_materials") {
+        println!(
+            "  emissive material {}: {} {}",
+            material["name"],
+            numbers(&material["value"]),
+            material["unit"].as_str().unwrap_or_default()
+        );
+    }
+    if !list("variants").is_empty() {
+        println!("  variants: {}", list("variants").iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "));
+    }
+    for warning in list("warnings") {
+        println!("  warning: {}", warning.as_str().unwrap_or_default());
+    }
+}
+
+fn numbers(value: &Value) -> String {
+    let parts = value
+        .as_array()
+        .map(|list| list.iter().filter_map(Value::as_f64).map(|v| format!("{v:.4}")).collect::<Vec<_>>());
+    parts.map(|parts| format!("({})", parts.join(", "))).unwrap_or_default()
+}

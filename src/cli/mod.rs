@@ -1,0 +1,99 @@
+//! The command line: parse, load, render, write, exit code. One file for each command.
+
+mod environment;
+mod info;
+mod progress;
+mod render;
+
+use std::process::ExitCode;
+
+use clap::{ArgMatches, Command};
+
+/// Exit code of a command that could not do what was asked.
+const FAILED: u8 = 1;
+/// Exit code of a render that was interrupted; what was computed is saved.
+const INTERRUPTED: u8 = 130;
+
+/// What became of a command that did not fail.
+enum Outcome {
+    Done,
+    Interrupted,
+}
+
+/// Runs the program on the arguments of the process.
+pub fn run() -> ExitCode {
+    let matches = command().get_matches();
+    let outcome = match matches.subcommand() {
+        Some(("render", args)) => render::run(args),
+        Some(("info", args)) => info::run(args),
+        _ => unreachable!("clap requires one of the commands"),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) => {
+            eprintln!("error: {error}");
+            for cause in error.chain().skip(1) {
+                eprintln!("  because: {cause}");
+            }
+            ExitCode::from(FAILED)
+        }
+    }
+}
+
+fn command() -> Command {
+    Command::new("penumbra")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Renders glTF scenes to multi-layer EXR, with shadow and ambient occlusion passes")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(render::command())
+        .subcommand(info::command())
+}
+
+/// The arguments by which every command reads a scene.
+mod scene {
+    use std::path::{Path, PathBuf};
+
+    use clap::{Arg, value_parser};
+
+    use super::ArgMatches;
+    use penumbra::desc::SceneDesc;
+    use penumbra::error::{Result, Warnings};
+    use penumbra::import::{self, ImportOptions, LightUnits};
+
+    pub fn args() -> [Arg; 3] {
+        [
+            Arg::new("scene")
+                .value_name("SCENE")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("The scene: .gltf or .glb"),
+            Arg::new("variant").long("variant").value_name("NAME").help("Material variant of the file to use"),
+            Arg::new("light-units")
+                .long("light-units")
+                .value_name("UNITS")
+                .value_parser(["spec", "compat", "raw"])
+                .default_value("spec")
+                .help("How lamps of a glTF file are meant: candela and lux, or as Blender's exporter modes"),
+        ]
+    }
+
+    pub fn path(args: &ArgMatches) -> &Path {
+        args.get_one::<PathBuf>("scene").expect("required")
+    }
+
+    /// The scene at `frame`, with the warnings of its import.
+    pub fn load(args: &ArgMatches, frame: Option<f64>) -> Result<(SceneDesc, Warnings)> {
+        let light_units = match args.get_one::<String>("light-units").map(String::as_str) {
+            Some("compat") => LightUnits::Compat,
+            Some("raw") => LightUnits::Raw,
+            _ => LightUnits::Spec,
+        };
+        let options =
+            ImportOptions { frame, variant: args.get_one("variant").cloned(), light_units, ..ImportOptions::default() };
+        let mut warnings = Warnings::new();
+        let scene = import::scene(path(args), &options, &mut warnings)?;
+        Ok((scene, warnings))
+    }
+}

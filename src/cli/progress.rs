@@ -1,0 +1,110 @@
+//! Progress on stderr: a bar for people at a terminal, JSON lines for machines, and Ctrl-C.
+
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use penumbra::render::{Observer, Progress};
+
+/// Set by the first Ctrl-C; the second one ends the process.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Makes Ctrl-C stop the render instead of the process. A second one stops the process.
+pub fn catch_interrupts() {
+    let handler = || {
+        if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(super::INTERRUPTED));
+        }
+    };
+    // Without a handler Ctrl-C ends the process as ever, which is all that can be done then.
+    if let Err(error) = ctrlc::set_handler(handler) {
+        eprintln!("warning: Ctrl-C will lose the render: {error}");
+    }
+}
+
+/// True once Ctrl-C was pressed.
+pub fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::SeqCst)
+}
+
+/// How progress is told.
+pub enum Reporter {
+    Bar(ProgressBar),
+    Json,
+    None,
+}
+
+impl Reporter {
+    /// By the name that `--progress` takes.
+    pub fn new(kind: &str) -> Self {
+        match kind {
+            "json" => Self::Json,
+            "bar" if std::io::stderr().is_terminal() => {
+                let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
+                let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}");
+                bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+                Self::Bar(bar)
+            }
+            _ => Self::None,
+        }
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Observer for Reporter {
+    fn progress(&self, progress: &Progress) {
+        let left = progress.remaining.map(|left| left.as_secs_f64());
+        match self {
+            Self::Bar(bar) => {
+                bar.set_position((progress.done * 1000.0) as u64);
+                let of = progress.target_spp.map(|n| format!("/{n}")).unwrap_or_default();
+                let left = left.map_or_else(|| "?".into(), clock);
+                bar.set_message(format!("{:.0}{of} spp  {} left", progress.spp, left));
+            }
+            Self::Json => {
+                let line = serde_json::json!({
+                    "done": progress.done,
+                    "spp": progress.spp,
+                    "target_spp": progress.target_spp,
+                    "elapsed_s": progress.elapsed.as_secs_f64(),
+                    "remaining_s": left,
+                });
+                eprintln!("{line}");
+            }
+            Self::None => {}
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupted()
+    }
+}
+
+/// `1:02:03`, `2:03` or `3.4 s`.
+pub fn clock(seconds: f64) -> String {
+    if seconds < 10.0 {
+        return format!("{seconds:.1} s");
+    }
+    let s = seconds.round() as u64;
+    match (s / 3600, s / 60 % 60, s % 60) {
+        (0, 0, s) => format!("{s} s"),
+        (0, m, s) => format!("{m}:{s:02}"),
+        (h, m, s) => format!("{h}:{m:02}:{s:02}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::clock;
+
+    #[test]
+    fn times_read_as_people_write_them() {
+        assert_eq!([0.04, 9.94, 59.4, 61.0, 3725.0].map(clock), ["0.0 s", "9.9 s", "59 s", "1:01", "1:02:05"]);
+    }
+}

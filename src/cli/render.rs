@@ -1,0 +1,301 @@
+//! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use anyhow::{Context, bail};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use penumbra::error::Warnings;
+use penumbra::film::SampleId;
+use penumbra::output::{self, Metadata, exr, png};
+use penumbra::scene::{View, prepare};
+use penumbra::settings::{SETTINGS, Settings};
+
+use super::progress::{Reporter, catch_interrupts, clock, interrupted};
+use super::{Outcome, environment, scene};
+
+pub fn command() -> Command {
+    let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
+    let command = Command::new("render")
+        .about("Render a scene to a multi-layer EXR")
+        .args(scene::args())
+        .arg(path("output").short('o').value_name("OUT.exr").required(true).help("The EXR file to write"))
+        .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
+        .arg(
+            Arg::new("camera")
+                .long("camera")
+                .value_name("NAME|PATH")
+                .help("Camera to look through; the first unless set"),
+        )
+        .arg(
+            Arg::new("size")
+                .long("size")
+                .value_name("WxH")
+                .value_parser(parse_size)
+                .help("Size of the picture in pixels; 960 across and the camera's own aspect unless set"),
+        )
+        .arg(
+            Arg::new("frame")
+                .long("frame")
+                .value_name("F")
+                .value_parser(value_parser!(f64))
+                .allow_negative_numbers(true)
+                .help("Evaluate animation at this frame, 24 per second; the file's pose at rest unless set"),
+        )
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B[xSTEP]")
+                .value_parser(parse_frames)
+                .conflicts_with("frame")
+                .help("Render several frames; #### in file names, or the end of the stem, becomes the number"),
+        )
+        .args(environment::args())
+        .arg(
+            Arg::new("progress")
+                .long("progress")
+                .value_name("KIND")
+                .value_parser(["bar", "json", "none"])
+                .default_value("bar")
+                .help("How progress is told on stderr; the bar only on a terminal"),
+        )
+        .arg(Arg::new("strict").long("strict").action(ArgAction::SetTrue).help("Take warnings for errors"))
+        .arg(
+            Arg::new("debug-sample")
+                .long("debug-sample")
+                .value_name("X,Y,I")
+                .value_parser(parse_sample)
+                .help("Trace sample I of pixel (X, Y) alone and print what it gave; writes nothing"),
+        );
+    SETTINGS.iter().fold(command, |command, def| {
+        let flag = def.name.replace('_', "-");
+        let default = if def.default.is_empty() { String::new() } else { format!(" [default: {}]", def.default) };
+        let arg = Arg::new(def.name).long(flag).value_name(def.value_name).help(format!("{}{default}", def.help));
+        command.arg(arg.allow_negative_numbers(true))
+    })
+}
+
+pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
+    let settings = settings(args);
+    let frames: Vec<Option<f64>> = match args.get_one::<Frames>("frames") {
+        Some(frames) => frames.iter().map(Some).collect(),
+        None => vec![args.get_one::<f64>("frame").copied()],
+    };
+    let numbered = args.contains_id("frames");
+    catch_interrupts();
+    for frame in frames {
+        let number = frame.filter(|_| numbered);
+        if let Outcome::Interrupted = render_frame(args, &settings, frame, number)? {
+            return Ok(Outcome::Interrupted);
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// The settings that were typed; a mistake ends the program as clap's own do.
+fn settings(args: &ArgMatches) -> Settings {
+    let mut settings = Settings::default();
+    for def in SETTINGS {
+        if let Some(text) = args.get_one::<String>(def.name)
+            && let Err(what) = def.set(&mut settings, text)
+        {
+            let flag = def.name.replace('_', "-");
+            let message = format!("invalid value '{text}' for '--{flag} <{}>': {what}", def.value_name);
+            command().error(clap::error::ErrorKind::ValueValidation, message).exit();
+        }
+    }
+    // Alone, the time is the rule.
+    if settings.time.is_some() && args.value_source("spp") != Some(ValueSource::CommandLine) {
+        settings.spp = Settings::NO_LIMIT;
+    }
+    settings
+}
+
+fn render_frame(
+    args: &ArgMatches,
+    settings: &Settings,
+    frame: Option<f64>,
+    number: Option<f64>,
+) -> anyhow::Result<Outcome> {
+    let path = |name: &str| args.get_one::<PathBuf>(name).map(|path| numbered(path, number));
+    let out = path("output").expect("required");
+    let preview = path("preview");
+    for path in [Some(&out), preview.as_ref()].into_iter().flatten() {
+        output::check_writable(path)?;
+    }
+
+    let (mut desc, mut warnings) = scene::load(args, frame)?;
+    environment::apply(args, &mut desc)?;
+    let view = View { camera: args.get_one("camera").cloned(), size: args.get_one("size").copied() };
+    let prepared = prepare(desc, &view, settings)?;
+    warnings.extend(prepared.warnings.clone());
+    tell(&warnings);
+    if args.get_flag("strict") && !warnings.is_empty() {
+        bail!("--strict: {} warnings about {}", warnings.len(), scene::path(args).display());
+    }
+    let scene = &prepared.scene;
+    if let Some(&[x, y, index]) = args.get_one::<[u64; 3]>("debug-sample") {
+        return debug_sample(scene, settings, x, y, index);
+    }
+    if interrupted() {
+        bail!("interrupted before the first sample: nothing to save");
+    }
+
+    let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"));
+    let rendered = penumbra::render::render(scene, settings, &reporter);
+    reporter.finish();
+    let rendered = rendered?;
+    let film = &rendered.film;
+    let bad = film.non_finite();
+    if let Some(SampleId { x, y, index }) = bad.first {
+        let what =
+            format!("{} samples were not finite and left out; the first: --debug-sample {x},{y},{index}", bad.count);
+        warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
+        eprintln!("warning: {what}");
+    }
+    let spp = film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()));
+    let metadata = Metadata {
+        scene: scene::path(args).display().to_string(),
+        camera: prepared.camera.to_string(),
+        frame,
+        samples: spp,
+        seed: settings.seed,
+        seconds: rendered.elapsed.as_secs_f64(),
+        date: Some(SystemTime::now()),
+        non_finite: bad.count,
+        non_finite_first: bad.first,
+        warnings: warnings.iter().map(ToString::to_string).collect(),
+        settings: SETTINGS.iter().map(|def| (def.name.to_owned(), def.get(settings))).collect(),
+        manifests: scene.ids.manifests(),
+        ..Metadata::default()
+    };
+    let picture = film.develop();
+    let saved = save(&out, &picture, &metadata, &exr::Options { half: settings.half, ..exr::Options::default() })?;
+    if let Some(preview) = &preview {
+        let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
+        png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
+    }
+    let seconds = clock(rendered.elapsed.as_secs_f64());
+    if rendered.interrupted {
+        eprintln!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display());
+        return Ok(Outcome::Interrupted);
+    }
+    eprintln!("{}: {}x{}, {spp:.0} spp, {seconds}", out.display(), scene.size[0], scene.size[1]);
+    Ok(Outcome::Done)
+}
+
+/// Writes the picture to `out`, or where that fails (a full disk, a folder that went away) to the
+/// system's temporary folder, so that no render is lost; returns where it is.
+fn save(
+    out: &Path,
+    picture: &penumbra::film::Picture,
+    metadata: &Metadata,
+    options: &exr::Options,
+) -> anyhow::Result<PathBuf> {
+    let Err(error) = exr::write(out, picture, metadata, options) else { return Ok(out.to_owned()) };
+    let rescue = std::env::temp_dir().join(out.file_name().unwrap_or_default());
+    let rescued = rescue != out && !rescue.exists() && exr::write(&rescue, picture, metadata, options).is_ok();
+    let fate =
+        if rescued { format!("the render is saved as {}", rescue.display()) } else { "the render is lost".into() };
+    Err(anyhow::Error::from(error).context(fate))
+}
+
+fn tell(warnings: &Warnings) {
+    for warning in warnings.iter() {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Replays one sample.
+fn debug_sample(
+    scene: &penumbra::scene::Scene,
+    settings: &Settings,
+    x: u64,
+    y: u64,
+    index: u64,
+) -> anyhow::Result<Outcome> {
+    let [width, height] = scene.size.map(u64::from);
+    if x >= width || y >= height {
+        bail!("--debug-sample: pixel ({x}, {y}) is outside of the {width}x{height} picture");
+    }
+    let (x, y) = (x as u32, y as u32);
+    let sampler = penumbra::sampling::Sampler::new(settings.sampler, settings.seed).for_sample(x, y, index);
+    let (sample, weight) = penumbra::integrator::sample(scene, settings, &sampler, x, y);
+    println!("{sample:#?}\nfilter weight {weight}");
+    Ok(Outcome::Done)
+}
+
+/// Frames from the first to the last in steps.
+#[derive(Clone, Copy, Debug)]
+struct Frames {
+    first: i64,
+    last: i64,
+    step: i64,
+}
+
+impl Frames {
+    fn iter(&self) -> impl Iterator<Item = f64> + use<> {
+        (self.first..=self.last).step_by(self.step as usize).map(|frame| frame as f64)
+    }
+}
+
+fn parse_frames(text: &str) -> Result<Frames, String> {
+    let (range, step) = text.split_once('x').unwrap_or((text, "1"));
+    let (first, last) = range.split_once('-').unwrap_or((range, range));
+    let number = |text: &str| text.parse::<i64>().map_err(|_| "expected A-B or A-BxSTEP, as 1-48x2".to_string());
+    let frames = Frames { first: number(first)?, last: number(last)?, step: number(step)? };
+    if frames.step < 1 || frames.last < frames.first {
+        return Err("the step must be at least 1 and the last frame not before the first".into());
+    }
+    Ok(frames)
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as 960x540")?;
+    match (width.parse(), height.parse()) {
+        (Ok(width), Ok(height)) if width > 0 && height > 0 => Ok([width, height]),
+        _ => Err("expected WIDTHxHEIGHT of at least 1x1, as 960x540".into()),
+    }
+}
+
+fn parse_sample(text: &str) -> Result<[u64; 3], String> {
+    let parts: Result<Vec<u64>, _> = text.split(',').map(str::parse).collect();
+    parts.ok().and_then(|parts| parts.try_into().ok()).ok_or_else(|| "expected X,Y,I, as 12,34,0".into())
+}
+
+/// `path` with the frame number: in place of a run of `#`, or as `.0001` behind the stem.
+fn numbered(path: &Path, number: Option<f64>) -> PathBuf {
+    let Some(number) = number else { return path.to_owned() };
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let hashes = name.matches('#').count();
+    let new = if hashes > 0 && name.contains(&"#".repeat(hashes)) {
+        name.replacen(&"#".repeat(hashes), &format!("{number:0hashes$}"), 1)
+    } else {
+        let (stem, extension) = name.rsplit_once('.').unwrap_or((name, "exr"));
+        format!("{stem}.{number:04}.{extension}")
+    };
+    path.with_file_name(new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frame_numbers_go_where_the_hashes_are() {
+        let name = |path: &str| numbered(Path::new(path), Some(7.0)).display().to_string();
+        assert_eq!(name("a/b.exr"), "a/b.0007.exr");
+        assert_eq!(name("a/b_###.exr"), "a/b_007.exr");
+        assert_eq!(numbered(Path::new("a#.exr"), None), Path::new("a#.exr"));
+    }
+
+    #[test]
+    fn ranges_and_sizes_are_checked() {
+        assert_eq!(parse_frames("1-7x3").unwrap().iter().collect::<Vec<_>>(), [1.0, 4.0, 7.0]);
+        assert_eq!(parse_frames("5").unwrap().iter().count(), 1);
+        assert!(parse_frames("7-1").is_err() && parse_frames("1-3x0").is_err());
+        assert_eq!(parse_size("960x540"), Ok([960, 540]));
+        assert!(parse_size("0x540").is_err() && parse_size("960").is_err());
+    }
+}

@@ -1,0 +1,34 @@
+//! Ambient occlusion: `A(p) = 1/π ∫ V(p, ω; distance) (n·ω) dω` about the shading normal.
+
+use crate::film::PixelSample;
+use crate::math::{Frame, Ray, Rgb};
+use crate::sampling::{Decision, Dimension, Sampler, warp};
+use crate::scene::{Interaction, RayCone, Scene};
+use crate::settings::Settings;
+
+/// One sample of the openness at `it`, 1 where nothing is near. As in Cycles there is no clipping
+/// at the geometric plane.
+pub fn openness(scene: &Scene, sampler: &Sampler, vertex: u32, it: &Interaction, frame: &Frame, distance: f32) -> f32 {
+    let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
+    let w = frame.to_world(warp::sample_cosine_hemisphere(u));
+    scene.transmittance(&Ray { t_max: distance, ..it.spawn(w) })
+}
+
+/// The distance that the settings give; without end unless set.
+pub fn distance(settings: &Settings) -> f32 {
+    settings.ao_distance.map_or(f32::INFINITY, |d| d as f32)
+}
+
+/// The integrator that renders nothing else: Combined holds the ao pass.
+pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings: &Settings) -> PixelSample {
+    let mut sample = PixelSample::default();
+    let Some((it, vertex)) = super::path::first_surface(scene, sampler, ray, cone) else {
+        return sample;
+    };
+    let frame = scene.shading_frame(&it);
+    sample.ao = Rgb::splat(openness(scene, sampler, vertex, &it, &frame, distance(settings)));
+    sample.combined = sample.ao;
+    sample.alpha = 1.0;
+    super::first_hit::describe(scene, &it, &frame, &mut sample);
+    sample
+}

@@ -1,0 +1,29 @@
+//! Radiance of one sample: the integrator's one entry is [`sample`].
+
+mod ao;
+mod direct;
+mod first_hit;
+mod path;
+mod shadow;
+mod split;
+
+pub use first_hit::first_hit;
+
+use crate::film::PixelSample;
+use crate::sampling::{Dimension, Sampler};
+use crate::scene::{RayCone, Scene};
+use crate::settings::{Integrator, Settings};
+
+/// One sample of the pixel in column `x` and row `y`, counted from the top left, and the weight that
+/// the pixel filter gives it.
+pub fn sample(scene: &Scene, settings: &Settings, sampler: &Sampler, x: u32, y: u32) -> (PixelSample, f32) {
+    let (dx, dy, weight) = settings.filter.sample(sampler.get_2d(Dimension::PIXEL));
+    let camera_ray = scene.camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy);
+    let cone = RayCone { width: camera_ray.width, spread: camera_ray.spread };
+    let sample = match settings.integrator {
+        Integrator::Path => path::trace(scene, sampler, camera_ray.ray, cone, settings, settings.max_bounces),
+        Integrator::Direct => path::trace(scene, sampler, camera_ray.ray, cone, settings, 0),
+        Integrator::Ao => ao::trace(scene, sampler, camera_ray.ray, cone, settings),
+    };
+    (sample, weight)
+}

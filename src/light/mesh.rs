@@ -1,0 +1,117 @@
+//! The emissive triangles of one placed mesh.
+//!
+//! A triangle is chosen by its power (area × mean radiance), a point on it uniformly by area; the
+//! density in solid angle is `pmf / area · d² / |cos θ_light|`.
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use super::{Emitter, EmitterHit, LightSample};
+use crate::math::{Bounds, Rgb, Vec3, offset_ray_origin};
+use crate::sampling::{AliasTable, warp};
+
+/// One triangle in render space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmissiveTriangle {
+    /// Corners.
+    pub p: [Vec3; 3],
+    /// Mean emitted radiance, by which it is chosen.
+    pub mean: Rgb,
+    /// Index of the triangle in its mesh.
+    pub index: u32,
+}
+
+/// How radiance varies over a mesh light: asked at a triangle of the mesh and its barycentrics.
+pub trait Emission: Send + Sync + std::fmt::Debug {
+    /// Emitted radiance at `(1 − u − v) p0 + u p1 + v p2` of `triangle`.
+    fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
+}
+
+/// All emissive triangles of an instance, emitting on both sides.
+#[derive(Clone, Debug)]
+pub struct MeshLight {
+    triangles: Arc<[EmissiveTriangle]>,
+    table: Arc<AliasTable>,
+    /// Probability per area of each triangle of the mesh, 0 for those that do not emit.
+    pdf_area: Arc<[f32]>,
+    bounds: Bounds,
+    power: f32,
+    /// `None` where each triangle's radiance is its mean.
+    emission: Option<Arc<dyn Emission>>,
+}
+
+impl MeshLight {
+    /// A light of `triangles`, of a mesh that has `mesh_triangles` in all; `None` where nothing is
+    /// emitted. `emission` gives the radiance at a point where it varies over a triangle.
+    pub fn new(
+        triangles: Vec<EmissiveTriangle>,
+        mesh_triangles: usize,
+        emission: Option<Arc<dyn Emission>>,
+    ) -> Option<Self> {
+        let area = |t: &EmissiveTriangle| {
+            let [a, b, c] = t.p.map(|p| p.as_dvec3());
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let weights: Vec<f64> = triangles.iter().map(|t| area(t) * f64::from(t.mean.luminance())).collect();
+        let table = AliasTable::new(&weights)?;
+        let mut pdf_area = vec![0.0; mesh_triangles];
+        for (i, triangle) in triangles.iter().enumerate() {
+            if weights[i] > 0.0 {
+                pdf_area[triangle.index as usize] = (f64::from(table.pmf(i)) / area(triangle)) as f32;
+            }
+        }
+        let bounds = Bounds::of_points(triangles.iter().flat_map(|t| t.p));
+        let power = (2.0 * std::f64::consts::PI * weights.iter().sum::<f64>()) as f32;
+        Some(Self {
+            triangles: triangles.into(),
+            table: Arc::new(table),
+            pdf_area: pdf_area.into(),
+            bounds,
+            power,
+            emission,
+        })
+    }
+}
+
+impl Emitter for MeshLight {
+    fn sample_li(&self, p: Vec3, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+        let triangle = &self.triangles[self.table.sample(uc).index];
+        let [a, b, c] = triangle.p;
+        let [b0, b1, b2] = warp::sample_triangle(u);
+        let on_light = a * b0 + b * b1 + c * b2;
+        let ng = (b - a).cross(c - a).normalize_or_zero();
+        let to_light = on_light - p;
+        let dist_squared = to_light.length_squared();
+        let wi = to_light / dist_squared.sqrt();
+        let cos = ng.dot(wi).abs();
+        let pdf = self.pdf_area[triangle.index as usize] * dist_squared / cos;
+        let li = match &self.emission {
+            Some(emission) => emission.radiance(triangle.index, [b1, b2]),
+            None => triangle.mean,
+        };
+        if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
+            return None;
+        }
+        // The shadow ray ends before the light, by more than rounding has moved the light's point.
+        let p_err = (a.abs().max(b.abs()).max(c.abs())) * (4.0 * f32::EPSILON);
+        let end = offset_ray_origin(on_light, p_err, ng, -wi);
+        let dist = (end - p).dot(wi) * (1.0 - 4.0 * f32::EPSILON);
+        (dist > 0.0).then_some(LightSample { li, wi, dist, pdf, delta: false })
+    }
+
+    fn pdf_li(&self, _p: Vec3, wi: Vec3, at: Option<&EmitterHit>) -> f32 {
+        let Some(at) = at else { return 0.0 };
+        let pdf = self.pdf_area[at.triangle as usize] * at.dist * at.dist / at.ng.dot(wi).abs();
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    fn importance(&self, p: Vec3) -> f32 {
+        // Not nearer than the light's own radius: inside of its box the distance says nothing.
+        let dist_squared = self.bounds.center().distance_squared(p).max(self.bounds.radius().powi(2));
+        self.power / (4.0 * PI * dist_squared.max(f32::MIN_POSITIVE))
+    }
+
+    fn power(&self, _scene: Bounds) -> f32 {
+        self.power
+    }
+}

@@ -1,0 +1,109 @@
+//! Which light a shading point samples.
+//!
+//! With few lights each is asked what it could send to the point and one is chosen in proportion;
+//! beyond [`SCAN_LIMIT`] lights that would cost more than it gains, and the choice is by power.
+
+use super::{Emitter, Light};
+use crate::math::{Bounds, Vec3};
+use crate::sampling::AliasTable;
+
+/// Up to so many lights are weighed at every shading point.
+const SCAN_LIMIT: usize = 32;
+
+/// All lights of a scene and the choice among them.
+#[derive(Clone, Debug, Default)]
+pub struct LightSet {
+    lights: Vec<Light>,
+    /// Indices of the lights that the background shows.
+    background: Vec<u32>,
+    by_power: Option<AliasTable>,
+}
+
+/// A light that was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Its index.
+    pub light: u32,
+    /// Probability with which it was chosen.
+    pub pmf: f32,
+    /// A fresh uniform number, made of what the choice left of the one it took.
+    pub u: f32,
+}
+
+impl LightSet {
+    /// The lights of a scene whose box is `scene`.
+    pub fn new(lights: Vec<Light>, scene: Bounds) -> Self {
+        let background = (0..lights.len() as u32).filter(|&i| lights[i as usize].in_background()).collect();
+        let by_power = (lights.len() > SCAN_LIMIT)
+            .then(|| AliasTable::new(&lights.iter().map(|l| f64::from(l.power(scene))).collect::<Vec<_>>()))
+            .flatten();
+        Self { lights, background, by_power }
+    }
+
+    /// True where nothing shines.
+    pub fn is_empty(&self) -> bool {
+        self.lights.is_empty()
+    }
+
+    /// How many lights there are.
+    pub fn len(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// Light `i`.
+    pub fn get(&self, i: u32) -> &Light {
+        &self.lights[i as usize]
+    }
+
+    /// Lights that a ray which leaves the scene may see, with their indices.
+    pub fn background(&self) -> impl Iterator<Item = (u32, &Light)> {
+        self.background.iter().map(|&i| (i, self.get(i)))
+    }
+
+    /// Chooses a light for point `p` by `u`; `None` where none can reach it.
+    pub fn choose(&self, p: Vec3, u: f32) -> Option<Choice> {
+        if let Some(table) = &self.by_power {
+            let chosen = table.sample(u);
+            return Some(Choice { light: chosen.index as u32, pmf: chosen.pmf, u: chosen.u });
+        }
+        if self.lights.len() == 1 {
+            return Some(Choice { light: 0, pmf: 1.0, u });
+        }
+        let (weights, total) = self.weigh(p);
+        let mut left = u * total;
+        let mut last = None;
+        for (i, &weight) in weights[..self.lights.len()].iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            let rest = (left / weight).clamp(0.0, crate::math::ONE_MINUS_EPSILON);
+            last = Some(Choice { light: i as u32, pmf: weight / total, u: rest });
+            if left < weight {
+                return last;
+            }
+            left -= weight;
+        }
+        last
+    }
+
+    /// Probability with which [`LightSet::choose`] at `p` chooses `light`.
+    pub fn pmf(&self, p: Vec3, light: u32) -> f32 {
+        if let Some(table) = &self.by_power {
+            return table.pmf(light as usize);
+        }
+        if self.lights.len() == 1 {
+            return 1.0;
+        }
+        let (weights, total) = self.weigh(p);
+        if total > 0.0 { weights[light as usize] / total } else { 0.0 }
+    }
+
+    /// Importance of each light at `p`, and their sum.
+    fn weigh(&self, p: Vec3) -> ([f32; SCAN_LIMIT], f32) {
+        let mut weights = [0.0; SCAN_LIMIT];
+        let mut total = 0.0;
+        for (weight, light) in weights.iter_mut().zip(&self.lights) {
+            // Bounded, so that a point light at zero distance leaves the sum finite.
+            *weight = light.importance(p).min(1e30);
+            total += *weight;
+        }
+        (weights, total)
+    }
+}

@@ -1,0 +1,115 @@
+//! What a scene can show at all, found once from what was authored and what was asked for.
+//!
+//! Absent effects build nothing and cast nothing. Every test of these flags stands at a coarse
+//! point: per pixel, per hit or per bounce.
+
+use crate::desc::{AlphaMode, MaterialDesc, ScalarInput, SceneDesc};
+use crate::film::{PassSet, Quantity};
+use crate::settings::{EffectsMode, Settings};
+
+/// Effects that a render simulates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effects {
+    /// Light that arrives at surfaces.
+    pub light: bool,
+    /// Light after more than one scattering.
+    pub indirect: bool,
+    /// Some surface lets light pass unscattered: cut-outs and blends.
+    pub cutouts: bool,
+    /// Some surface is a transmissive solid that absorbs.
+    pub absorption: bool,
+    /// Baked occlusion maps are applied.
+    pub occlusion_maps: bool,
+    /// The ao pass.
+    pub ao: bool,
+    /// The shadow and unshadowed passes.
+    pub shadow: bool,
+    /// The albedo of the first surface.
+    pub color: bool,
+    /// Data of the first surface that average over samples: normal, uv, denoising.
+    pub geometry: bool,
+    /// Passes that take one ray through the pixel's centre.
+    pub first_hit: bool,
+    /// Cryptomatte.
+    pub cryptomatte: bool,
+}
+
+impl Effects {
+    /// The effects that `scene` calls for under `settings`.
+    pub fn of(scene: &SceneDesc, settings: &Settings) -> Self {
+        let passes = &settings.passes;
+        if settings.effects == EffectsMode::All {
+            return Self::forced(passes);
+        }
+        let mut used = vec![false; scene.materials.len()];
+        for &material in scene.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
+            used[material as usize] = true;
+        }
+        let any = |test: &dyn Fn(&MaterialDesc) -> bool| {
+            scene.materials.iter().zip(&used).any(|(material, used)| *used && test(material))
+        };
+        Self {
+            indirect: passes.needs_indirect() && settings.max_bounces > 0,
+            cutouts: any(&|m| !is_opaque(scene, m)),
+            absorption: any(&absorbs),
+            occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
+            ..Self::forced(passes)
+        }
+    }
+
+    /// Everything on that the passes can show.
+    fn forced(passes: &PassSet) -> Self {
+        Self {
+            light: passes.needs_light(),
+            indirect: passes.needs_indirect(),
+            cutouts: true,
+            absorption: true,
+            occlusion_maps: true,
+            ao: passes.needs_ao(),
+            shadow: passes.needs_shadow(),
+            color: passes.needs_color() || passes.needs_denoising(),
+            geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs_denoising(),
+            first_hit: passes.needs_first_hit(),
+            cryptomatte: passes.needs_cryptomatte(),
+        }
+    }
+}
+
+/// True where the material's opacity is 1 everywhere.
+pub(super) fn is_opaque(scene: &SceneDesc, material: &MaterialDesc) -> bool {
+    let alpha = &material.alpha;
+    let textured = alpha.texture.is_some_and(|(texture, _)| {
+        let image = scene.textures.get(texture.texture as usize).and_then(|t| scene.images.get(t.image as usize));
+        image.is_some_and(|image| matches!(image.channels, 2 | 4))
+    });
+    match material.alpha_mode {
+        AlphaMode::Opaque => true,
+        AlphaMode::Mask { cutoff } => !textured && alpha.factor >= cutoff && !has_vertex_alpha(scene),
+        AlphaMode::Blend => !textured && alpha.factor >= 1.0 && !has_vertex_alpha(scene),
+    }
+}
+
+fn has_vertex_alpha(scene: &SceneDesc) -> bool {
+    use crate::desc::Attribute::{Corner, Point};
+    scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).any(|colors| match colors {
+        Point(values) | Corner(values) => values.iter().any(|c| c[3] < 1.0),
+    })
+}
+
+/// True where some light can be refracted into the material.
+fn transmits(material: &MaterialDesc) -> bool {
+    scalar_can_be_positive(&material.transmission)
+}
+
+fn absorbs(material: &MaterialDesc) -> bool {
+    transmits(material)
+        && material.volume.is_some_and(|v| {
+            scalar_can_be_positive(&v.thickness)
+                && v.attenuation_distance.is_finite()
+                && v.attenuation_color.iter().any(|&c| c < 1.0)
+        })
+}
+
+fn scalar_can_be_positive(input: &ScalarInput) -> bool {
+    input.factor > 0.0
+}

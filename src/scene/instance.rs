@@ -1,0 +1,69 @@
+//! A mesh placed in render space.
+
+use crate::math::{Affine3A, Mat3A, Vec3, gamma};
+
+/// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
+pub mod mask {
+    use crate::desc::Visibility;
+
+    /// Rays from the camera.
+    pub const CAMERA: u32 = 1;
+    /// Diffuse bounces.
+    pub const DIFFUSE: u32 = 2;
+    /// Reflections.
+    pub const GLOSSY: u32 = 4;
+    /// Refractions.
+    pub const TRANSMISSION: u32 = 8;
+    /// Shadow and occlusion rays, for objects that stop them whole.
+    pub const SHADOW: u32 = 16;
+    /// Shadow and occlusion rays, for objects whose opacity must be asked.
+    pub const SHADOW_CUTOUT: u32 = 32;
+    /// Objects that emit.
+    pub const EMITTER: u32 = 64;
+
+    /// The mask of an object.
+    pub fn of(visibility: Visibility, cutout: bool, emits: bool) -> u32 {
+        let bit = |on: bool, bit: u32| if on { bit } else { 0 };
+        bit(visibility.camera, CAMERA)
+            | bit(visibility.diffuse, DIFFUSE)
+            | bit(visibility.glossy, GLOSSY)
+            | bit(visibility.transmission, TRANSMISSION)
+            | bit(visibility.shadow, if cutout { SHADOW_CUTOUT } else { SHADOW })
+            | bit(emits, EMITTER)
+    }
+}
+
+/// A mesh placed in render space.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Index of the mesh.
+    pub mesh: u32,
+    /// Mesh space (object space less the mesh's centre) to render space.
+    pub object_to_render: Affine3A,
+    /// Inverse transpose of its linear part: carries normals.
+    pub normal_to_render: Mat3A,
+    /// True where the transform mirrors, which turns the winding around.
+    pub mirrored: bool,
+    /// Material of each slot.
+    pub materials: Box<[u32]>,
+    /// Index of the light that its emissive triangles form.
+    pub light: Option<u32>,
+}
+
+impl Instance {
+    /// The material of slot `slot`.
+    pub fn material(&self, slot: usize) -> u32 {
+        self.materials[slot.min(self.materials.len() - 1)]
+    }
+
+    /// `p` in render space, with the bound of its error grown by what the transform adds.
+    pub fn point(&self, p: Vec3, p_err: Vec3) -> (Vec3, Vec3) {
+        let m = &self.object_to_render;
+        let magnitude = |v: Vec3| {
+            Vec3::from(m.matrix3.x_axis.abs() * v.x + m.matrix3.y_axis.abs() * v.y + m.matrix3.z_axis.abs() * v.z)
+        };
+        let p_err =
+            magnitude(p_err) * (1.0 + gamma(3)) + (magnitude(p.abs()) + Vec3::from(m.translation).abs()) * gamma(8);
+        (m.transform_point3(p), p_err)
+    }
+}

@@ -1,0 +1,135 @@
+//! A point where a ray meets a surface.
+
+use super::{RayCone, Scene};
+use crate::bvh::Hit;
+use crate::math::{Frame, Ray, Vec3, sqr};
+
+/// Geometry of a hit in render space. Materials are evaluated from it, as far as they are needed.
+#[derive(Clone, Copy, Debug)]
+pub struct Interaction {
+    /// The point.
+    pub p: Vec3,
+    /// Half-width of the box in which rounding has left `p`.
+    pub p_err: Vec3,
+    /// Unit geometric normal, outward as wound.
+    pub ng: Vec3,
+    /// Unit shading normal on the side of `ng`, before normal maps.
+    pub ns: Vec3,
+    /// Unit direction back along the ray.
+    pub wo: Vec3,
+    /// True where `wo` is on the side of `ng`.
+    pub front: bool,
+    /// Which instance.
+    pub instance: u32,
+    /// Which triangle of its mesh.
+    pub triangle: u32,
+    /// Which material.
+    pub material: u32,
+    /// Barycentrics of the second and third corner.
+    pub barycentrics: [f32; 2],
+    /// Width of the ray's cone here, stretched by the slant of the surface.
+    pub footprint: f32,
+    /// Twice the triangle's area in render space.
+    pub double_area: f32,
+}
+
+impl Scene {
+    /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
+    pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
+        let instance = &self.instances[hit.instance as usize];
+        let mesh = self.mesh(instance);
+        let barycentrics = [hit.u, hit.v];
+        let local = mesh.point(hit.triangle, barycentrics);
+        let (p, p_err) = instance.point(local.p, local.p_err);
+        let [e1, e2] = local.edges.map(|e| instance.object_to_render.transform_vector3(e));
+        let cross = e1.cross(e2);
+        let double_area = cross.length();
+        let wo = -ray.d;
+        let wound = if instance.mirrored { -cross } else { cross };
+        let ng = if double_area > 0.0 { wound / double_area } else { wo };
+        let ns = mesh.normal(hit.triangle, barycentrics).map_or(ng, |n| {
+            let n = Vec3::from(instance.normal_to_render * crate::math::Vec3A::from(n)).normalize_or(ng);
+            // Authored normals that point inward would turn the surface inside out.
+            if n.dot(ng) < 0.0 { -n } else { n }
+        });
+        let cos = wo.dot(ng);
+        Interaction {
+            p,
+            p_err,
+            ng,
+            ns,
+            wo,
+            front: cos >= 0.0,
+            instance: hit.instance,
+            triangle: hit.triangle,
+            material: instance.material(mesh.slot(hit.triangle)),
+            barycentrics,
+            footprint: cone.at(hit.t) / cos.abs().max(0.05),
+            double_area,
+        }
+    }
+
+    /// The shading frame on the side of `wo`, normal map applied, x along the tangent where there
+    /// is one.
+    pub fn shading_frame(&self, it: &Interaction) -> Frame {
+        let material = &self.materials[it.material as usize];
+        let instance = &self.instances[it.instance as usize];
+        let mut n = it.ns;
+        let tangent = mesh_tangent(self, it);
+        if let Some(map) = &material.normal
+            && let Some((tangent, sign)) = tangent
+        {
+            let frame = Frame::from_z_and_tangent(n, tangent);
+            let sign = if instance.mirrored { -sign } else { sign };
+            let [x, y, z, _] = self.look_up(map.input, it);
+            let local = Vec3::new((2.0 * x - 1.0) * map.scale, (2.0 * y - 1.0) * map.scale, 2.0 * z - 1.0);
+            n = (frame.s * local.x + frame.t * (local.y * sign) + n * local.z).normalize_or(n);
+        }
+        if !it.front {
+            n = -n;
+        }
+        let n = facing(n, if it.front { it.ng } else { -it.ng }, it.wo);
+        tangent.map_or_else(|| Frame::from_z(n), |(t, _)| Frame::from_z_and_tangent(n, t))
+    }
+}
+
+fn mesh_tangent(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
+    let instance = &scene.instances[it.instance as usize];
+    let (tangent, sign) = scene.mesh(instance).tangent(it.triangle, it.barycentrics)?;
+    Some((instance.object_to_render.transform_vector3(tangent), sign))
+}
+
+/// `n`, bent as little as needed for `wo` to be above its horizon; both `n` and the geometric
+/// normal `ng` are meant to be on the side of `wo`. Interpolated and mapped normals near the
+/// silhouette break that, and would shade black.
+fn facing(n: Vec3, ng: Vec3, wo: Vec3) -> Vec3 {
+    const MIN_COS: f32 = 1e-3;
+    let cos = n.dot(wo);
+    // Where the surface itself is seen at a grazing angle the shading normal may be so, too.
+    let min_cos = MIN_COS.min(0.5 * ng.dot(wo).max(0.0)).max(1e-6);
+    if cos >= min_cos {
+        return n;
+    }
+    let along = n - wo * cos;
+    let length = along.length();
+    if length < 1e-6 {
+        return ng;
+    }
+    along / length * (1.0 - sqr(min_cos)).sqrt() + wo * min_cos
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bent_normal_faces_the_viewer_and_a_good_one_stays() {
+        let (ng, wo) = (Vec3::Z, Vec3::new(0.99, 0.0, 0.14).normalize());
+        let good = Vec3::new(0.1, 0.0, 1.0).normalize();
+        assert_eq!(facing(good, ng, wo), good);
+        let bad = Vec3::new(-0.9, 0.0, 0.2).normalize();
+        let bent = facing(bad, ng, wo);
+        assert!(bent.dot(wo) > 0.0 && (bent.length() - 1.0).abs() < 1e-5);
+        assert!(facing(-wo, ng, wo).dot(wo) > 0.0);
+    }
+}

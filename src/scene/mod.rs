@@ -1,0 +1,70 @@
+//! The scene as it is traced: `f32`, immutable during a render, in *render space*, whose origin lies
+//! near the camera.
+
+mod effects;
+mod framing;
+mod ids;
+mod instance;
+mod interaction;
+mod material;
+mod prepare;
+mod trace;
+
+pub use effects::Effects;
+pub use ids::Ids;
+pub use instance::{Instance, mask};
+pub use interaction::Interaction;
+pub use material::Material;
+pub use prepare::{Prepared, View, prepare};
+pub use trace::RayCone;
+
+use std::sync::Arc;
+
+use crate::bvh::Bvh;
+use crate::camera::Camera;
+use crate::light::LightSet;
+use crate::math::DVec3;
+use crate::shape::Mesh;
+use crate::texture::Texture;
+
+/// Everything that a ray can ask.
+pub struct Scene {
+    /// The camera.
+    pub camera: Camera,
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    /// World position of render space's origin.
+    pub origin: DVec3,
+    /// What this scene can show.
+    pub effects: Effects,
+    /// All lights.
+    pub lights: LightSet,
+    /// True where the camera sees the background lights; else it sees black and alpha 0.
+    pub background_visible: bool,
+    /// Names and hashes for the index and Cryptomatte passes.
+    pub ids: Ids,
+    bvh: Bvh,
+    meshes: Vec<Arc<Mesh>>,
+    instances: Vec<Instance>,
+    materials: Vec<Material>,
+    textures: Arc<Vec<Texture>>,
+}
+
+impl Scene {
+    /// The placed mesh `i`, an index that a hit gives.
+    pub fn instance(&self, i: u32) -> &Instance {
+        &self.instances[i as usize]
+    }
+
+    /// The mesh of `instance`.
+    pub fn mesh(&self, instance: &Instance) -> &Mesh {
+        &self.meshes[instance.mesh as usize]
+    }
+
+    /// Memory of the acceleration structure, the meshes and the textures, in bytes.
+    pub fn bytes(&self) -> [usize; 3] {
+        let meshes = self.meshes.iter().map(|mesh| mesh.bytes()).sum();
+        let textures = self.textures.iter().map(|texture| texture.image().bytes()).sum();
+        [self.bvh.bytes(), meshes, textures]
+    }
+}

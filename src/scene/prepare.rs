@@ -1,0 +1,107 @@
+//! From what was authored to what is traced: the only place that sees both sides.
+
+mod camera;
+mod geometry;
+mod lights;
+mod materials;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::framing::world_bounds;
+use super::{Effects, Ids, Scene};
+use crate::desc::{self, SceneDesc, WorldDesc};
+use crate::error::{Result, Warnings};
+use crate::film::Quantity;
+use crate::light::LightSet;
+use crate::math::DVec3;
+use crate::settings::Settings;
+
+/// What to make of a scene's cameras.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// Name or node path of the camera; `None` for the first, or one that frames the scene.
+    pub camera: Option<String>,
+    /// Width and height of the picture; `None` for 960 across and the camera's own aspect.
+    pub size: Option<[u32; 2]>,
+}
+
+/// A scene ready to be traced, and what it took.
+pub struct Prepared {
+    /// The scene.
+    pub scene: Scene,
+    /// Name of the camera that was chosen.
+    pub camera: Arc<str>,
+    /// Time spent on the acceleration structure.
+    pub build_time: Duration,
+    /// What was replaced or left out.
+    pub warnings: Warnings,
+}
+
+/// Turns `desc` into what is traced, as `settings` ask.
+///
+/// # Errors
+/// An index of `desc` that is out of range, an unknown camera, a picture without size.
+pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
+    desc::check(&desc)?;
+    let mut warnings = Warnings::new();
+    let (camera_desc, size) = camera::choose(&desc, view, &mut warnings)?;
+    let origin = render_space_origin(&desc, camera_desc.transform.translation);
+    let camera = camera::prepare(&camera_desc, size, origin);
+
+    let effects = Effects::of(&desc, settings);
+    let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
+    let textures = Arc::new(textures);
+    let start = Instant::now();
+    let mut geometry = geometry::prepare(&desc, origin, &materials, &mut warnings);
+    let build_time = start.elapsed();
+
+    let default_world = default_world(&desc, &materials, &mut warnings);
+    let world = desc.world.as_ref().or(default_world.as_ref());
+    let lights = if effects.light || settings.passes.needs(Quantity::Environment) {
+        lights::prepare(&desc, world, origin, &mut geometry, &materials, &textures, &mut warnings)
+    } else {
+        Vec::new()
+    };
+    let lights = LightSet::new(lights, geometry.bvh.bounds());
+    let scene = Scene {
+        camera,
+        size,
+        origin,
+        effects,
+        lights,
+        background_visible: world.is_some_and(|world| world.visible),
+        ids: Ids::of(&desc, &geometry.placed),
+        bvh: geometry.bvh,
+        meshes: geometry.meshes,
+        instances: geometry.instances,
+        materials,
+        textures,
+    };
+    Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// A point near the camera on a grid as coarse as the scene allows: where everything is near the
+/// world's origin it is that origin's neighbour, and it stays put while the camera moves a little.
+fn render_space_origin(desc: &SceneDesc, camera: DVec3) -> DVec3 {
+    if !camera.is_finite() {
+        return DVec3::ZERO;
+    }
+    let reach = world_bounds(desc).map_or(1.0, |(min, max)| (0.5 * (min + max)).distance(camera).max(1e-9));
+    let cell = reach.log2().floor().clamp(-60.0, 60.0).exp2();
+    (camera / cell).round() * cell
+}
+
+/// The dome of a scene that has no light at all.
+fn default_world(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<WorldDesc> {
+    let lit = desc.world.is_some() || !desc.lights.is_empty() || materials.iter().any(super::Material::emits);
+    if lit {
+        return None;
+    }
+    warnings.push(
+        &desc.place,
+        "no light in the scene: lit by a constant white dome (radiance 1, not seen by the camera); \
+         --environment FILE replaces it",
+    );
+    Some(WorldDesc { place: desc.place.clone(), radiance: [1.0; 3], image: None, visible: false })
+}

@@ -1,0 +1,120 @@
+//! Meshes moved to the middle of their box, instances to render space, and the tree over them.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use crate::bvh::{self, Blas, Bvh};
+use crate::desc::{self, InstanceDesc, MeshDesc, SceneDesc};
+use crate::error::Warnings;
+use crate::math::{Affine3A, Bounds, DAffine3, DVec3, Mat3A, Vec2, Vec3};
+use crate::scene::{Instance, Material, mask};
+use crate::shape::{self, Mesh};
+
+/// Everything that has a place.
+pub struct Geometry {
+    /// Meshes, as in the `SceneDesc`.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Placed meshes.
+    pub instances: Vec<Instance>,
+    /// For each of `instances`, its index in the `SceneDesc`.
+    pub placed: Vec<u32>,
+    /// The tree.
+    pub bvh: Bvh,
+}
+
+/// Prepares all meshes that are placed, in parallel.
+pub fn prepare(desc: &SceneDesc, origin: DVec3, materials: &[Material], warnings: &mut Warnings) -> Geometry {
+    let mut used = vec![false; desc.meshes.len()];
+    for instance in &desc.instances {
+        used[instance.mesh as usize] = true;
+    }
+    let (meshes, blases): (Vec<_>, Vec<_>) = desc
+        .meshes
+        .par_iter()
+        .zip(&used)
+        .map(|(mesh, used)| {
+            let mesh = if *used { prepare_mesh(mesh) } else { Mesh::default() };
+            let blas = Blas::build(&mesh.points, &mesh.triangles);
+            (Arc::new(mesh), Arc::new(blas))
+        })
+        .unzip();
+    let default_material = materials.len() as u32 - 1;
+    let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, instance) in desc.instances.iter().enumerate() {
+        let mesh = &meshes[instance.mesh as usize];
+        if mesh.triangles.is_empty() {
+            continue;
+        }
+        let Some(prepared) = place(instance, mesh, origin, default_material) else {
+            warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
+            continue;
+        };
+        let cutout = prepared.materials.iter().any(|&m| materials[m as usize].is_cutout());
+        let emits = prepared.materials.iter().any(|&m| materials[m as usize].emits());
+        boxes.push(bvh::Instance {
+            blas: instance.mesh,
+            object_to_render: prepared.object_to_render,
+            mask: mask::of(instance.visibility, cutout, emits),
+        });
+        instances.push(prepared);
+        placed.push(i as u32);
+    }
+    Geometry { meshes, instances, placed, bvh: Bvh::build(blases, boxes) }
+}
+
+fn prepare_mesh(desc: &MeshDesc) -> Mesh {
+    let bounds = Bounds::of_points(desc.points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
+    let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
+    let points: Vec<Vec3> = desc.points.iter().map(|p| (DVec3::from(p.map(f64::from)) - center).as_vec3()).collect();
+    Mesh {
+        center,
+        points,
+        triangles: desc.triangles.clone(),
+        normals: desc.normals.as_ref().map(|n| convert(n, |&n| Vec3::from(n))),
+        uvs: desc.uvs.iter().map(|uv| convert(uv, |&uv| Vec2::from(uv))).collect(),
+        tangents: desc.tangents.as_ref().map(|t| convert(t, |&t| t)),
+        colors: desc.colors.as_ref().map(|c| convert(c, |&c| c)),
+        material_slots: desc.material_slots.clone(),
+    }
+}
+
+fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::Attribute<U> {
+    match attribute {
+        desc::Attribute::Point(values) => shape::Attribute::Point(values.iter().map(f).collect()),
+        desc::Attribute::Corner(values) => shape::Attribute::Corner(values.iter().map(f).collect()),
+    }
+}
+
+/// `desc` in render space; `None` where its transform can't be undone or leaves the range of `f32`.
+fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32) -> Option<Instance> {
+    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(mesh.center);
+    let inverse = to_render.matrix3.inverse();
+    let object_to_render = Affine3A::from_cols(
+        to_render.matrix3.x_axis.as_vec3a(),
+        to_render.matrix3.y_axis.as_vec3a(),
+        to_render.matrix3.z_axis.as_vec3a(),
+        to_render.translation.as_vec3a(),
+    );
+    // Only the direction of normals matters: scaled so that tiny and huge objects stay in range.
+    let normals = inverse.transpose();
+    let largest = normals.to_cols_array().into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    if !(largest.is_finite() && largest > 0.0 && object_to_render.is_finite()) {
+        return None;
+    }
+    let normals = normals * (1.0 / largest);
+    let slots = desc.materials.iter().map(|m| m.unwrap_or(default_material));
+    let materials: Box<[u32]> = if desc.materials.is_empty() { [default_material].into() } else { slots.collect() };
+    Some(Instance {
+        mesh: desc.mesh,
+        object_to_render,
+        normal_to_render: Mat3A::from_cols(
+            normals.x_axis.as_vec3a(),
+            normals.y_axis.as_vec3a(),
+            normals.z_axis.as_vec3a(),
+        ),
+        mirrored: to_render.matrix3.determinant() < 0.0,
+        materials,
+        light: None,
+    })
+}

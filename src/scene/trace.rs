@@ -1,0 +1,72 @@
+//! Rays into the scene: what they hit, and how much light a segment lets through.
+
+use super::{Interaction, Scene, mask};
+use crate::bvh::Hit;
+use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
+
+/// Surfaces that one ray may pass unscattered before it counts as stopped.
+const MAX_TRANSPARENT: u32 = 256;
+
+/// The footprint of a ray: a cone of width `width + spread · t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayCone {
+    /// Width at the origin.
+    pub width: f32,
+    /// Growth per unit of distance.
+    pub spread: f32,
+}
+
+impl RayCone {
+    /// Width at distance `t`.
+    pub fn at(&self, t: f32) -> f32 {
+        self.width + self.spread * t
+    }
+}
+
+impl Scene {
+    /// The nearest surface along `ray` that `mask` sees.
+    pub fn closest_hit(&self, ray: &Ray, mask: u32) -> Option<Hit> {
+        self.bvh.closest_hit(ray, mask)
+    }
+
+    /// Share of light that passes along `ray`: 0 behind an opaque surface, the product of
+    /// `1 − opacity` through cut-outs and blends.
+    pub fn transmittance(&self, ray: &Ray) -> f32 {
+        if self.bvh.any_hit(ray, mask::SHADOW) {
+            return 0.0;
+        }
+        if !self.effects.cutouts {
+            return 1.0;
+        }
+        let mut left = 1.0;
+        let mut ray = *ray;
+        for _ in 0..MAX_TRANSPARENT {
+            let Some(hit) = self.closest_hit(&ray, mask::SHADOW_CUTOUT) else { return left };
+            let it = self.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+            left *= 1.0 - self.opacity(&it);
+            if left == 0.0 {
+                return 0.0;
+            }
+            ray = it.continued(&ray, hit.t);
+        }
+        0.0
+    }
+
+    /// Radiance of the background lights along the unit direction `d`, and for each its index.
+    pub fn background(&self, d: Vec3) -> impl Iterator<Item = (u32, Rgb)> {
+        use crate::light::Emitter;
+        self.lights.background().map(move |(i, light)| (i, light.le(d))).filter(|(_, le)| !le.is_black())
+    }
+}
+
+impl Interaction {
+    /// A ray that leaves this point towards the unit direction `w`.
+    pub fn spawn(&self, w: Vec3) -> Ray {
+        Ray::new(offset_ray_origin(self.p, self.p_err, self.ng, w), w)
+    }
+
+    /// What is left of `ray` behind this point, which it met at `t`.
+    pub fn continued(&self, ray: &Ray, t: f32) -> Ray {
+        Ray { t_max: ray.t_max - t, ..self.spawn(ray.d) }
+    }
+}

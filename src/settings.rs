@@ -1,0 +1,287 @@
+//! SETTINGS: one table of everything that a user can set about a render.
+//!
+//! The command line's flags, the add-on's properties and `docs/settings.md` are made of it; adding a
+//! setting is adding a row.
+
+use std::fmt::Display;
+
+use crate::film::{Filter, PassSet};
+use crate::sampling::{PATTERNS, Pattern};
+
+/// Which light transport is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Path tracing with next-event estimation and multiple importance sampling.
+    Path,
+    /// Light that comes straight from lights; nothing bounces.
+    Direct,
+    /// Ambient occlusion alone: Combined holds the ao pass.
+    Ao,
+}
+
+/// Which effects are simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EffectsMode {
+    /// Those that the scene calls for.
+    Auto,
+    /// All; gives the same bits as `auto`.
+    All,
+}
+
+/// How a value is typed and shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A whole number in an inclusive range.
+    Int {
+        /// Smallest.
+        min: u64,
+        /// Largest.
+        max: u64,
+    },
+    /// A number in an inclusive range.
+    Float {
+        /// Smallest.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+    /// On or off.
+    Bool,
+    /// One of a few names.
+    Choice(&'static [&'static str]),
+    /// Anything that the setting's own parser takes.
+    Text,
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct SettingDef {
+    /// Name as in the struct; the flag is `--` and the name with `-` for `_`.
+    pub name: &'static str,
+    /// What stands for the value in the help.
+    pub value_name: &'static str,
+    /// How the value is typed.
+    pub kind: Kind,
+    /// Default, as typed; empty where absent means something of its own.
+    pub default: &'static str,
+    /// One line for the user.
+    pub help: &'static str,
+    set: fn(&mut Settings, &str) -> Result<(), String>,
+    get: fn(&Settings) -> String,
+}
+
+impl SettingDef {
+    /// Sets this row's value from what the user typed.
+    ///
+    /// # Errors
+    /// A sentence that says what is allowed.
+    pub fn set(&self, settings: &mut Settings, text: &str) -> Result<(), String> {
+        (self.set)(settings, text)
+    }
+
+    /// The value as a user would type it.
+    pub fn get(&self, settings: &Settings) -> String {
+        (self.get)(settings)
+    }
+}
+
+/// A type that stands in the table.
+trait Value: Sized {
+    fn parse(text: &str, kind: Kind) -> Result<Self, String>;
+    fn show(&self) -> String;
+}
+
+fn in_range<T: PartialOrd + Display>(value: T, min: T, max: T) -> Result<T, String> {
+    if min <= value && value <= max { Ok(value) } else { Err(format!("must be from {min} to {max}")) }
+}
+
+impl Value for u64 {
+    fn parse(text: &str, kind: Kind) -> Result<Self, String> {
+        let value = text.parse().map_err(|_| "must be a whole number, not negative".to_string())?;
+        if let Kind::Int { min, max } = kind { in_range(value, min, max) } else { Ok(value) }
+    }
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for u32 {
+    fn parse(text: &str, kind: Kind) -> Result<Self, String> {
+        u64::parse(text, kind)?.try_into().map_err(|_| "is too large".to_string())
+    }
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for f64 {
+    fn parse(text: &str, kind: Kind) -> Result<Self, String> {
+        let value: Self = text.parse().map_err(|_| "must be a number".to_string())?;
+        if let Kind::Float { min, max } = kind { in_range(value, min, max) } else { Ok(value) }
+    }
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for bool {
+    fn parse(text: &str, _kind: Kind) -> Result<Self, String> {
+        match text {
+            "on" | "true" => Ok(true),
+            "off" | "false" => Ok(false),
+            _ => Err("must be on or off".into()),
+        }
+    }
+    fn show(&self) -> String {
+        if *self { "on" } else { "off" }.into()
+    }
+}
+
+impl<T: Value> Value for Option<T> {
+    fn parse(text: &str, kind: Kind) -> Result<Self, String> {
+        if text.is_empty() { Ok(None) } else { T::parse(text, kind).map(Some) }
+    }
+    fn show(&self) -> String {
+        self.as_ref().map(T::show).unwrap_or_default()
+    }
+}
+
+/// A value that is one of a list of names.
+macro_rules! choice {
+    ($type:ty, $names:ident, $($name:literal => $value:expr),+) => {
+        const $names: &[&str] = &[$($name),+];
+        impl Value for $type {
+            fn parse(text: &str, _kind: Kind) -> Result<Self, String> {
+                match text {
+                    $($name => Ok($value),)+
+                    _ => Err(format!("must be one of {}", $names.join(", "))),
+                }
+            }
+            fn show(&self) -> String {
+                $(if *self == $value { return $name.into(); })+
+                String::new()
+            }
+        }
+    };
+}
+
+choice!(Integrator, INTEGRATORS, "path" => Integrator::Path, "direct" => Integrator::Direct, "ao" => Integrator::Ao);
+choice!(EffectsMode, EFFECTS, "auto" => EffectsMode::Auto, "all" => EffectsMode::All);
+
+impl Value for Pattern {
+    fn parse(text: &str, _kind: Kind) -> Result<Self, String> {
+        let names = || PATTERNS.iter().map(|info| info.name).collect::<Vec<_>>().join(", ");
+        Self::from_name(text).ok_or_else(|| format!("must be one of {}", names()))
+    }
+    fn show(&self) -> String {
+        self.name().into()
+    }
+}
+
+impl Value for Filter {
+    fn parse(text: &str, _kind: Kind) -> Result<Self, String> {
+        Self::parse(text)
+    }
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for PassSet {
+    fn parse(text: &str, _kind: Kind) -> Result<Self, String> {
+        Self::parse(text)
+    }
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+/// The table: the struct, its defaults and [`SETTINGS`] from one list.
+macro_rules! settings {
+    ($($name:ident: $type:ty = $default:literal, $kind:expr, $value_name:literal, $help:literal;)+) => {
+        /// What a user has set about a render.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Settings {
+            $(#[doc = $help] pub $name: $type,)+
+        }
+
+        /// Every setting, in the order of the help.
+        pub const SETTINGS: &[SettingDef] = &[$(SettingDef {
+            name: stringify!($name),
+            value_name: $value_name,
+            kind: $kind,
+            default: $default,
+            help: $help,
+            set: |settings, text| {
+                settings.$name = <$type as Value>::parse(text, $kind)?;
+                Ok(())
+            },
+            get: |settings| Value::show(&settings.$name),
+        }),+];
+
+        impl Default for Settings {
+            fn default() -> Self {
+                Self { $($name: <$type as Value>::parse($default, $kind).expect("defaults are in range"),)+ }
+            }
+        }
+    };
+}
+
+settings! {
+    spp: u32 = "64", Kind::Int { min: 1, max: Settings::NO_LIMIT as u64 }, "N",
+        "Samples per pixel";
+    time: Option<f64> = "", Kind::Float { min: 0.0, max: 1e9 }, "SECONDS",
+        "Stop after so many seconds of rendering, whatever the samples; alone, the only rule";
+    passes: PassSet = "combined", Kind::Text, "LIST",
+        "Passes to write, separated by commas, or all";
+    integrator: Integrator = "path", Kind::Choice(INTEGRATORS), "NAME",
+        "Light transport: path, direct (nothing bounces) or ao (occlusion alone)";
+    max_bounces: u32 = "12", Kind::Int { min: 0, max: 1 << 20 }, "N",
+        "Scatterings after the first hit; 0 for direct light only";
+    ao_distance: Option<f64> = "", Kind::Float { min: 0.0, max: f64::MAX }, "D",
+        "Occluders farther than this many metres do not count in the ao pass; unlimited unless set";
+    sampler: Pattern = "sobol", Kind::Text, "NAME",
+        "Point set that the random decisions are drawn from";
+    filter: Filter = "blackman_harris:1.5", Kind::Text, "NAME[:WIDTH]",
+        "Pixel reconstruction filter and its half width in pixels";
+    occlusion_maps: bool = "on", Kind::Bool, "on|off",
+        "Apply baked occlusion maps to bounced diffuse light, as glTF defines them";
+    seed: u64 = "0", Kind::Int { min: 0, max: u64::MAX }, "N",
+        "Seed of every random decision; the same seed gives the same bits";
+    threads: u32 = "0", Kind::Int { min: 0, max: 4096 }, "N",
+        "Threads; 0 for one per core";
+    half: bool = "off", Kind::Bool, "on|off",
+        "Write colour passes as half floats; data passes stay float";
+    effects: EffectsMode = "auto", Kind::Choice(EFFECTS), "auto|all",
+        "Simulate the effects that the scene calls for, or all of them (the same picture, slower)";
+}
+
+impl Settings {
+    /// Samples per pixel of a render that something else ends.
+    pub const NO_LIMIT: u32 = u32::MAX;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_comes_back_as_it_is_typed() {
+        let settings = Settings::default();
+        for def in SETTINGS {
+            assert_eq!(def.get(&settings), def.default, "{}", def.name);
+        }
+    }
+
+    #[test]
+    fn values_out_of_range_say_what_is_allowed() {
+        let mut settings = Settings::default();
+        let def = |name: &str| SETTINGS.iter().find(|d| d.name == name).unwrap();
+        assert_eq!(def("spp").set(&mut settings, "0").unwrap_err(), "must be from 1 to 4294967295");
+        assert!(def("spp").set(&mut settings, "many").is_err());
+        assert!(def("integrator").set(&mut settings, "magic").unwrap_err().contains("path, direct, ao"));
+        assert!(def("time").set(&mut settings, "NaN").is_err());
+        def("ao_distance").set(&mut settings, "2.5").unwrap();
+        assert_eq!(settings.ao_distance, Some(2.5));
+    }
+}

@@ -1,0 +1,286 @@
+//! Whole renders against closed forms.
+
+#[path = "support/scene.rs"]
+mod scene;
+
+use std::f64::consts::PI;
+
+use penumbra::desc::{AlphaMode, ColorInput, LightKind, MaterialDesc, ScalarInput};
+use penumbra::math::{DAffine3, DVec3};
+use penumbra::settings::{EffectsMode, Integrator, Settings};
+use scene::{Builder, close, mean, picture, settings};
+
+const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
+
+fn emitter(builder: &mut Builder, radiance: f64, albedo: f64) -> u32 {
+    builder.material(MaterialDesc {
+        base_color: ColorInput::constant([albedo; 3]),
+        specular: ScalarInput::constant(0.0),
+        roughness: ScalarInput::constant(1.0),
+        emission: ColorInput::constant([radiance; 3]),
+        ..MaterialDesc::default()
+    })
+}
+
+/// A lamp above the ground, a mile of wall beside it.
+fn sun(builder: &mut Builder, irradiance: f64, angle: f64) {
+    let transform = DAffine3::from_rotation_x(-0.5 * PI);
+    builder.light(LightKind::Distant { irradiance: [irradiance; 3], angle }, transform);
+}
+
+#[test]
+fn inside_a_closed_glowing_sphere_everything_is_le_over_one_minus_albedo() {
+    for albedo in [0.0, 0.5, 0.8] {
+        let mut builder = Builder::default();
+        let material = emitter(&mut builder, 1.0 - albedo, albedo);
+        builder.sphere(16, false, material, DAffine3::IDENTITY);
+        builder.look([0.0, -0.5, 0.0], DOWN, 0.4);
+        let settings = Settings { max_bounces: 200, ..settings("combined", 256) };
+        let picture = picture(&builder.desc, 8, &settings);
+        close(&format!("albedo {albedo}"), mean(&picture, "Combined", 0), 1.0, 4e-3);
+    }
+}
+
+#[test]
+fn a_plane_under_a_constant_dome_reflects_its_albedo() {
+    let mut builder = Builder::default();
+    let material = builder.lambert(0.6);
+    builder.ground(10.0, material);
+    builder.dome(2.0);
+    builder.look([0.0; 3], DOWN, 0.1);
+    let picture = picture(&builder.desc, 4, &settings("all", 64));
+    close("Combined", mean(&picture, "Combined", 0), 1.2, 2e-3);
+    close("Diffuse Direct", mean(&picture, "Diffuse Direct", 1), 2.0, 2e-3);
+    close("Unshadowed", mean(&picture, "Diffuse Direct Unshadowed", 1), 2.0, 2e-3);
+    close("Diffuse Color", mean(&picture, "Diffuse Color", 2), 0.6, 1e-5);
+    assert_eq!(mean(&picture, "Shadow", 0), 1.0);
+    assert_eq!(mean(&picture, "Ambient Occlusion", 0), 1.0);
+    assert_eq!(mean(&picture, "Diffuse Indirect", 0), 0.0);
+}
+
+#[test]
+fn a_lamp_without_size_lights_by_the_inverse_square() {
+    let mut builder = Builder::default();
+    let material = builder.lambert(0.5);
+    builder.ground(10.0, material);
+    let lamp = LightKind::Point { intensity: [3.0; 3], range: f64::INFINITY };
+    builder.light(lamp, DAffine3::from_translation(DVec3::new(1.0, 2.0, 0.0)));
+    builder.look([0.0; 3], DOWN, 1e-3);
+    let picture = picture(&builder.desc, 2, &settings("combined,diffuse_direct", 4));
+    let irradiance = 3.0 * (2.0 / 5.0_f64.sqrt()) / 5.0;
+    close("Diffuse Direct", mean(&picture, "Diffuse Direct", 0), irradiance / PI, 1e-4);
+    close("Combined", mean(&picture, "Combined", 0), 0.5 * irradiance / PI, 1e-4);
+}
+
+#[test]
+fn an_emissive_square_lights_by_its_form_factor() {
+    let mut builder = Builder::default();
+    let (floor, lamp) = (builder.lambert(0.5), emitter(&mut builder, 5.0, 0.0));
+    builder.ground(10.0, floor);
+    builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], lamp);
+    builder.look([0.0, 0.0, 0.0], [0.7, -0.7, 0.0], 1e-3);
+    let picture = picture(&builder.desc, 4, &settings("diffuse_direct,combined,shadow", 512));
+    // A unit square one above: E/(πL) = 4/(2π) · 2 · (a/√(1+a²)) atan(a/√(1+a²)), a = 1/2.
+    let x = 0.5 / 1.25_f64.sqrt();
+    let form = 4.0 / (2.0 * PI) * 2.0 * x * x.atan();
+    close("Diffuse Direct", mean(&picture, "Diffuse Direct", 0), 5.0 * form, 3e-3);
+    close("Shadow", mean(&picture, "Shadow", 0), 1.0, 1e-6);
+}
+
+#[test]
+fn ambient_occlusion_beside_a_wall() {
+    for (distance, height) in [(1.0, 1.0), (0.3, 0.9), (0.5, 1.0)] {
+        let mut builder = Builder::default();
+        let material = builder.lambert(0.5);
+        builder.ground(100.0, material);
+        builder.quad([distance, 0.0, -1e4], [0.0, height, 0.0], [0.0, 0.0, 2e4], material);
+        builder.look([0.0; 3], DOWN, 1e-3);
+        let expected = 0.5 * (1.0 + distance / distance.hypot(height));
+        for integrator in [Integrator::Path, Integrator::Ao] {
+            let settings = Settings { integrator, ..settings("ao,combined", 1024) };
+            let picture = picture(&builder.desc, 4, &settings);
+            close("open share beside a wall", mean(&picture, "Ambient Occlusion", 0), expected, 2e-3);
+        }
+    }
+}
+
+#[test]
+fn ambient_occlusion_ends_at_its_distance() {
+    for distance in [2.0, 4.0, 10.0] {
+        let mut builder = Builder::default();
+        let material = builder.lambert(0.5);
+        builder.ground(100.0, material);
+        builder.quad([1.0, 0.0, -1e3], [0.0, 1e3, 0.0], [0.0, 0.0, 2e3], material);
+        builder.look([0.0; 3], DOWN, 1e-3);
+        let settings = Settings { ao_distance: Some(distance), ..settings("ao", 1024) };
+        let c = 1.0 / distance;
+        let expected = 1.0 - (c.acos() - c * (1.0 - c * c).sqrt()) / PI;
+        let value = mean(&picture(&builder.desc, 4, &settings), "Ambient Occlusion", 0);
+        close("open share before a wall", value, expected, 2e-3);
+    }
+    let mut builder = Builder::default();
+    let material = builder.lambert(0.5);
+    builder.ground(100.0, material);
+    builder.quad([0.1, 0.0, -1e3], [0.0, 1e3, 0.0], [0.0, 0.0, 2e3], material);
+    builder.look([0.0; 3], DOWN, 1e-3);
+    let settings = Settings { ao_distance: Some(0.0), ..settings("ao", 16) };
+    assert_eq!(mean(&picture(&builder.desc, 4, &settings), "Ambient Occlusion", 0), 1.0);
+}
+
+#[test]
+fn coverage_and_transparency_count_in_ambient_occlusion() {
+    let glass = |opacity: f64| MaterialDesc {
+        alpha: ScalarInput::constant(opacity),
+        alpha_mode: AlphaMode::Blend,
+        ..MaterialDesc::default()
+    };
+    // A half transparent ground over nothing, beside a wall of opacity 0.3.
+    let mut builder = Builder::default();
+    let (ground, wall) = (builder.material(glass(0.5)), builder.material(glass(0.3)));
+    builder.ground(100.0, ground);
+    builder.quad([1.0, 0.0, -1e4], [0.0, 1.0, 0.0], [0.0, 0.0, 2e4], wall);
+    builder.look([0.0; 3], DOWN, 1e-3);
+    let picture = picture(&builder.desc, 4, &settings("ao,combined", 4096));
+    let blocked = 0.5 * (1.0 - 0.5_f64.sqrt());
+    close("coverage × openness", mean(&picture, "Ambient Occlusion", 0), 0.5 * (1.0 - 0.3 * blocked), 3e-3);
+    close("alpha", mean(&picture, "Combined", 3), 0.5, 3e-3);
+}
+
+#[test]
+fn half_of_a_sun_is_half_of_its_shadow() {
+    let mut builder = Builder::default();
+    let material = builder.lambert(0.5);
+    builder.ground(100.0, material);
+    // An edge straight above the point hides half of the disk.
+    builder.quad([0.0, 1.0, -50.0], [50.0, 0.0, 0.0], [0.0, 0.0, 100.0], material);
+    sun(&mut builder, 2.0, 0.2);
+    builder.look([0.0; 3], [0.5, -0.1, 0.0], 1e-6);
+    let settings = Settings { max_bounces: 0, ..settings("shadow,unshadowed,diffuse_direct", 4096) };
+    let picture = picture(&builder.desc, 4, &settings);
+    close("Shadow", mean(&picture, "Shadow", 0), 0.5, 3e-3);
+    close("Unshadowed", mean(&picture, "Diffuse Direct Unshadowed", 0), 2.0 / PI, 2e-3);
+}
+
+#[test]
+fn an_occluder_between_leaves_the_unshadowed_light_as_it_was() {
+    // A lid over the ground: in full shadow whatever the strategy that found the light.
+    let mut builder = Builder::default();
+    let (floor, lamp) = (builder.lambert(0.5), emitter(&mut builder, 5.0, 0.0));
+    builder.ground(10.0, floor);
+    builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], lamp);
+    builder.quad([-9.0, 0.5, -9.0], [18.0, 0.0, 0.0], [0.0, 0.0, 18.0], floor);
+    builder.look([0.0, 0.0, 0.0], [0.9, -0.2, 0.0], 1e-3);
+    let settings = Settings { max_bounces: 0, ..settings("shadow,unshadowed,diffuse_direct", 512) };
+    let picture = picture(&builder.desc, 4, &settings);
+    let x = 0.5 / 1.25_f64.sqrt();
+    let form = 4.0 / (2.0 * PI) * 2.0 * x * x.atan();
+    close("Unshadowed", mean(&picture, "Diffuse Direct Unshadowed", 0), 5.0 * form, 3e-3);
+    assert_eq!(mean(&picture, "Shadow", 0), 0.0);
+}
+
+/// Objects of every kind of surface under several lights.
+fn busy_scene() -> Builder {
+    let mut builder = Builder::default();
+    let floor = builder.lambert(0.7);
+    let lamp = emitter(&mut builder, 8.0, 0.2);
+    let number = ScalarInput::constant;
+    let metal = builder.material(MaterialDesc {
+        base_color: ColorInput::constant([0.9, 0.6, 0.2]),
+        metallic: number(1.0),
+        roughness: number(0.3),
+        ..MaterialDesc::default()
+    });
+    let glass = builder.material(MaterialDesc {
+        base_color: ColorInput::constant([0.9, 1.0, 0.9]),
+        transmission: number(1.0),
+        roughness: number(0.1),
+        volume: Some(penumbra::desc::VolumeDesc {
+            thickness: number(1.0),
+            attenuation_distance: 0.5,
+            attenuation_color: [0.5, 0.8, 0.9],
+        }),
+        ..MaterialDesc::default()
+    });
+    let plastic = builder.material(MaterialDesc {
+        base_color: ColorInput::constant([0.8, 0.0, 0.1]),
+        alpha: number(0.6),
+        alpha_mode: AlphaMode::Blend,
+        ..MaterialDesc::default()
+    });
+    builder.ground(20.0, floor);
+    builder.quad([-1.0, 4.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.5, 2.0], lamp);
+    for (i, material) in [metal, glass, plastic].into_iter().enumerate() {
+        let place = DVec3::new(2.2 * i as f64 - 2.2, 1.0, 0.0);
+        builder.sphere(24, true, material, DAffine3::from_translation(place));
+    }
+    builder.light(LightKind::Distant { irradiance: [1.0, 0.9, 0.8], angle: 0.05 }, DAffine3::from_rotation_x(-1.1));
+    builder.dome(0.3);
+    builder.look([0.0, 1.0, 0.0], [0.0, -0.6, -1.0], 3.5);
+    builder
+}
+
+#[test]
+fn passes_recombine_to_the_picture() {
+    let picture = picture(&busy_scene().desc, 24, &settings("all", 16));
+    let layer = |name: &str| &picture.layer(name).unwrap_or_else(|| panic!("{name}")).data;
+    let combined = layer("Combined");
+    let lobes = ["Diffuse", "Glossy", "Transmission"].map(|lobe| {
+        [layer(&format!("{lobe} Color")), layer(&format!("{lobe} Direct")), layer(&format!("{lobe} Indirect"))]
+    });
+    for pixel in 0..24 * 24 {
+        for c in 0..3 {
+            let i = 3 * pixel + c;
+            let sum: f32 = lobes.iter().map(|[color, direct, indirect]| color[i] * (direct[i] + indirect[i])).sum();
+            let sum = sum + layer("Emission")[i] + layer("Environment")[i];
+            let value = combined[4 * pixel + c];
+            assert!((sum - value).abs() <= 1e-5 * value.max(1.0), "pixel {pixel}: {sum} and {value}");
+            let product = layer("Shadow")[i] * layer("Diffuse Direct Unshadowed")[i];
+            let direct = layer("Diffuse Direct")[i];
+            assert!((product - direct).abs() <= 1e-5 * direct.max(1e-3), "pixel {pixel}: {product} and {direct}");
+        }
+    }
+}
+
+#[test]
+fn threads_and_forced_effects_change_no_bit() {
+    let desc = busy_scene().desc;
+    let base = Settings { threads: 1, ..settings("all", 8) };
+    let one = picture(&desc, 20, &base);
+    assert_eq!(one, picture(&desc, 20, &Settings { threads: 3, ..base.clone() }));
+    assert_eq!(one, picture(&desc, 20, &Settings { effects: EffectsMode::All, ..base.clone() }));
+    assert_ne!(one, picture(&desc, 20, &Settings { seed: 1, ..base.clone() }));
+    // Asking for fewer passes leaves those that are asked for as they are.
+    let few = picture(&desc, 20, &Settings { passes: settings("combined,ao", 8).passes, ..base });
+    assert_eq!(few.layer("Combined"), one.layer("Combined"));
+    assert_eq!(few.layer("Ambient Occlusion"), one.layer("Ambient Occlusion"));
+}
+
+#[test]
+fn neither_scale_nor_place_matters() {
+    let value = |scale: f64, offset: f64| {
+        let mut builder = Builder::default();
+        let (floor, lamp) = (builder.lambert(0.5), emitter(&mut builder, 5.0, 0.0));
+        builder.ground(10.0, floor);
+        builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], lamp);
+        builder.quad([0.0, 0.5, -9.0], [9.0, 0.0, 0.0], [0.0, 0.0, 18.0], floor);
+        builder.look([0.0; 3], [0.4, -0.7, 0.1], 1e-3);
+        let place = DAffine3::from_scale(DVec3::splat(scale));
+        let place = DAffine3::from_translation(DVec3::new(offset, -offset, 0.5 * offset)) * place;
+        for instance in &mut builder.desc.instances {
+            instance.transform = place * instance.transform;
+        }
+        let camera = &mut builder.desc.cameras[0];
+        camera.transform.translation = place.transform_point3(camera.transform.translation);
+        camera.projection =
+            penumbra::desc::ProjectionDesc::Orthographic { half_width: 1e-3 * scale, half_height: 1e-3 * scale };
+        let settings = Settings { max_bounces: 1, ..settings("diffuse_direct,shadow,ao", 256) };
+        let picture = picture(&builder.desc, 4, &settings);
+        ["Diffuse Direct", "Shadow", "Ambient Occlusion"].map(|layer| mean(&picture, layer, 0))
+    };
+    let expected = value(1.0, 0.0);
+    for (scale, offset) in [(1e-6, 0.0), (1e-3, 0.0), (1e3, 0.0), (1e9, 0.0), (1.0, 1e6), (1.0, 1e7), (1e-3, 1e3)] {
+        for (value, expected) in value(scale, offset).into_iter().zip(expected) {
+            close(&format!("scale {scale}, offset {offset}"), value, expected, 2e-3);
+        }
+    }
+}
