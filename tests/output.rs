@@ -349,7 +349,7 @@ fn previews_are_srgb() {
     });
 }
 
-/// Leaves a file of every pass for `tests/exr_readers.py` in Cargo's temporary folder.
+/// Leaves a file of every pass for `tests/python/test_exr_readers.py` in Cargo's temporary folder.
 #[test]
 fn a_file_for_other_readers() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readers.exr");

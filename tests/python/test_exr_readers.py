@@ -1,13 +1,9 @@
 """What other programs see in Penumbra's EXR files: OpenImageIO and Blender (image loader, compositor, Cryptomatte).
 
-    cargo test --test output            # leaves readers.exr and readers_half.exr in target/tmp
-    python tests/exr_readers.py [FOLDER]
-
-Needs OpenImageIO, numpy and bpy 5.0 in the Python that runs it.
+`cargo test --test output` leaves readers.exr and readers_half.exr in target/tmp.
 """
 
 import json
-import sys
 import tempfile
 from pathlib import Path
 
@@ -15,6 +11,7 @@ import bpy
 import numpy as np
 import OpenImageIO as oiio
 
+FOLDER = Path(__file__).resolve().parents[2] / "target" / "tmp"
 WIDTH, HEIGHT = 64, 48
 U, V = np.meshgrid(np.arange(WIDTH, dtype=np.float32) / WIDTH, np.arange(HEIGHT, dtype=np.float32) / HEIGHT)
 COLOR = np.stack([U, V, np.float32(0.25) + np.float32(0.5) * U * V], axis=-1)
@@ -35,7 +32,7 @@ def parts(path):
     return result
 
 
-def check_openimageio(folder):
+def test_openimageio_reads_every_part(folder=FOLDER):
     float_parts, half_parts = parts(folder / "readers.exr"), parts(folder / "readers_half.exr")
     assert list(float_parts) == list(half_parts) and len(float_parts) == 34, list(float_parts)
     for name, (channels, formats, pixels, attributes) in float_parts.items():
@@ -88,7 +85,7 @@ def composite(tree_for, folder):
     return file.read_image(0, 0, 0, file.spec().nchannels, oiio.FLOAT)
 
 
-def check_blender(folder):
+def test_blender_composites_every_pass(folder=FOLDER):
     image = bpy.data.images.load(str(folder / "readers.exr"))
     _ = tuple(image.size)  # Blender looks at the file now and not before.
     assert image.type == "MULTILAYER", image.type
@@ -129,11 +126,3 @@ def check_blender(folder):
         left = np.arange(WIDTH) * 2 < WIDTH
         mask = result[..., 0] if result.ndim == 3 else result
         assert (mask[:, left] == 1).all() and (mask[:, ~left] == 0).all(), "the matte of Cube"
-    print("Blender", bpy.app.version_string + ": ok,", len(sockets), "sockets, Cryptomatte by name")
-
-
-if __name__ == "__main__":
-    default = Path(__file__).resolve().parent.parent / "target" / "tmp"
-    where = Path(sys.argv[1]) if len(sys.argv) > 1 else default
-    check_openimageio(where)
-    check_blender(where)
