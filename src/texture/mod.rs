@@ -10,8 +10,4 @@ mod transform;
 pub use image::Image;
 pub use lookup::Texture;
 pub use srgb::decode as srgb_to_linear;
-<<<<<<< HEAD
 pub use transform::{TextureRef, UvTransform};
-=======
-pub use transform::UvTransform;
->>>>>>> film

@@ -1,6 +1,31 @@
-//! The affine map of texture coordinates before a lookup.
+//! How an input of a material reaches its texture: which one, by which coordinates, under which affine map.
 
-use crate::desc::TextureTransform;
+use super::lookup::Texture;
+use crate::desc::{self, TextureTransform};
+
+/// A texture as one input of a material uses it, ready for lookups.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into the scene's textures.
+    pub texture: u32,
+    /// Which UV set of the mesh.
+    pub uv_set: u32,
+    /// Applied to the UV before the lookup.
+    pub transform: UvTransform,
+}
+
+impl TextureRef {
+    /// Linear color and alpha at the mesh's `uv` of [`Self::uv_set`]; `footprint` is in units of that UV.
+    pub fn lookup(&self, textures: &[Texture], uv: [f32; 2], footprint: f32) -> [f32; 4] {
+        textures[self.texture as usize].lookup(self.transform.apply(uv), self.transform.footprint(footprint))
+    }
+}
+
+impl From<desc::TextureRef> for TextureRef {
+    fn from(desc: desc::TextureRef) -> Self {
+        Self { texture: desc.texture, uv_set: desc.uv_set, transform: desc.transform.into() }
+    }
+}
 
 /// Rows of a 2×3 matrix, in `f32` for the render.
 #[derive(Clone, Copy, Debug, PartialEq)]
