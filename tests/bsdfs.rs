@@ -49,8 +49,9 @@ const CASES: &[Case] = &[
     outside("plastic, white", WHITE, true),
     outside("plastic, matt", Surface { roughness: 1.0, ..WHITE }, true),
     outside("plastic, gold reflection", Surface { specular_color: Rgb::new(9.0, 4.0, 1.0), ..WHITE }, false),
+    outside("plastic, infinite index", Surface { ior: 0.0, ..WHITE }, true),
     outside("plastic, dense", Surface { ior: 2.4, roughness: 0.3, ..WHITE }, true),
-    outside("plastic, thinner than its outside", Surface { ior: 0.7, ..WHITE }, false),
+    outside("plastic, thinner than its outside", Surface { ior: 0.7, ..WHITE }, true),
     inside("plastic, back", WHITE, true),
     outside("metal, smooth", Surface { roughness: 0.0, base_color: TEAL, ..METAL }, false),
     outside("metal, polished", Surface { roughness: 0.15, base_color: TEAL, ..METAL }, false),
@@ -82,9 +83,9 @@ impl Case {
         Bsdf::new(&self.surface, self.entering)
     }
 
-    /// True where light comes from the denser side.
+    /// True where light comes from the denser side of glass.
     fn has_critical_angle(&self) -> bool {
-        !self.entering || self.surface.ior < 1.0
+        self.surface.transmission > 0.0 && (!self.entering || self.surface.ior < 1.0)
     }
 }
 
@@ -102,16 +103,17 @@ fn samples(bsdf: &Bsdf, wo: Vec3, pattern: Pattern, n: u64) -> impl Iterator<Ite
     })
 }
 
-/// What a white surrounding sees: the mean of the weights, per class.
-fn furnace(bsdf: &Bsdf, wo: Vec3) -> [Rgb; 3] {
-    let n = 1 << 14;
-    let mut sum = [Rgb::BLACK; 3];
+/// What a white surrounding sees: the mean of `n` weights, per class.
+fn furnace(bsdf: &Bsdf, wo: Vec3, n: u64) -> [Rgb; 3] {
+    let mut sums = [[0.0_f64; 3]; 3];
     for s in samples(bsdf, wo, Pattern::Sobol, n).flatten() {
-        for (sum, part) in sum.iter_mut().zip([s.weight.diffuse, s.weight.glossy, s.weight.transmission]) {
-            *sum += part * (1.0 / n as f32);
+        for (sum, part) in sums.iter_mut().zip([s.weight.diffuse, s.weight.glossy, s.weight.transmission]) {
+            for (sum, channel) in sum.iter_mut().zip(part.to_array()) {
+                *sum += f64::from(channel);
+            }
         }
     }
-    sum
+    sums.map(|sum| Rgb::from(sum.map(|channel| channel / n as f64)))
 }
 
 fn total(parts: [Rgb; 3]) -> Rgb {
@@ -204,24 +206,28 @@ fn directions_follow_the_density() {
 #[test]
 fn energy_is_kept_and_never_made() {
     for case in CASES {
-        let bsdf = case.bsdf();
-        for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
-            for above in [true, false] {
-                let seen = total(furnace(&bsdf, view(degrees, 0.3, above)));
-                // The tables are less exact where the view grazes, and where there is a critical angle.
-                let tolerance = if degrees > 86.0 {
-                    2e-2
-                } else if case.has_critical_angle() {
-                    1e-2
-                } else {
-                    5e-3
-                };
-                for c in seen.to_array() {
-                    assert!(c <= 1.0 + tolerance, "{} {degrees}: {c}", case.name);
-                    assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
+        // Once more with a lobe so narrow that the tables change fastest.
+        let narrow = Bsdf::new(&Surface { roughness: 0.03, ..case.surface }, case.entering);
+        for bsdf in [case.bsdf(), narrow] {
+            for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
+                for above in [true, false] {
+                    check_energy(case, &bsdf, view(degrees, 0.3, above), degrees);
                 }
             }
         }
+    }
+}
+
+fn check_energy(case: &Case, bsdf: &Bsdf, wo: Vec3, degrees: f32) {
+    // The tables are less exact where the view grazes, and where there is a critical angle.
+    let tolerance = match degrees {
+        86.0.. => 2e-2,
+        _ if case.has_critical_angle() => 1e-2,
+        _ => 5e-3,
+    };
+    for c in total(furnace(bsdf, wo, 1 << 14)).to_array() {
+        assert!(c <= 1.0 + tolerance, "{} {degrees}: {c}", case.name);
+        assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
     }
 }
 
@@ -233,7 +239,7 @@ fn albedo_is_the_furnace_per_class() {
         for degrees in [0.0, 45.0, 60.0, 75.0, 85.0] {
             let wo = view(degrees, 0.3, true);
             let albedo = bsdf.albedo(wo);
-            let parts = furnace(&bsdf, wo);
+            let parts = furnace(&bsdf, wo, 1 << 14);
             // A critical angle is a step that the tables smear between reflection and passage.
             for (seen, told) in parts.into_iter().zip([albedo.diffuse, albedo.glossy, albedo.transmission]) {
                 let d = seen - told;
@@ -277,7 +283,7 @@ fn furnace_of_cycles() {
     for (name, surface, expected) in table {
         let bsdf = Bsdf::new(surface, true);
         for (degrees, expected) in [0.0, 45.0, 60.0, 75.0, 85.0].into_iter().zip(expected) {
-            let seen = total(furnace(&bsdf, view(degrees, 0.0, true))).g;
+            let seen = total(furnace(&bsdf, view(degrees, 0.0, true), 1 << 17)).g;
             println!("{name:20} {degrees:4} {seen:.4} {expected:.4}");
             // Cycles itself strays from 1 by as much at 85 degrees, where white plastic is exact here.
             assert!((seen / expected - 1.0).abs() < 0.0105, "{name}, {degrees}: {seen} {expected}");
@@ -409,7 +415,7 @@ fn polish_meets_the_mirror() {
     for surface in [METAL, GLASS, Surface { base_color: TEAL, ..WHITE }] {
         for degrees in [0.0, 50.0, 80.0] {
             let wo = view(degrees, 0.4, true);
-            let seen = |roughness| total(furnace(&Bsdf::new(&Surface { roughness, ..surface }, true), wo));
+            let seen = |roughness| total(furnace(&Bsdf::new(&Surface { roughness, ..surface }, true), wo, 1 << 14));
             let d = seen(0.0099) - seen(0.0101);
             assert!(d.to_array().iter().all(|d| d.abs() < 2e-3), "{surface:?} {degrees}: {d:?}");
         }

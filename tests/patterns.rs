@@ -75,6 +75,25 @@ fn sobol_points_are_nets() {
     }
 }
 
+/// 16 samples of 4 parts each fill 64 cells.
+#[test]
+fn parts_of_samples_are_one_net() {
+    let base = Sampler::new(Pattern::Sobol, 6);
+    let dimension = Dimension::at_bounce(0, Decision::Ao);
+    let mut hit = [false; 64];
+    for i in 0..16 {
+        let sample = base.for_sample(5, 5, i);
+        for k in 0..4 {
+            let [x, y] = sample.part(k, 4).get_2d(dimension);
+            let cell = (y * 8.0) as usize * 8 + (x * 8.0) as usize;
+            assert!(!std::mem::replace(&mut hit[cell], true));
+        }
+        assert_eq!(sample.part(0, 1).get_2d(dimension), sample.get_2d(dimension));
+    }
+    let far = base.for_sample(5, 5, (1 << 32) - 1).part(3, 4);
+    assert_ne!(far.get_2d(dimension), base.for_sample(5, 5, (1 << 32) - 1).get_2d(dimension));
+}
+
 /// Coordinates of different decisions, and of different pixels, spread over the square as independent
 /// ones do, over many short runs.
 #[test]

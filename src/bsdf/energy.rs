@@ -23,8 +23,9 @@ const COS_NODES: usize = 32;
 const ROUGHNESS_NODES: usize = 32;
 /// Nodes in ∜F0, each for an index and for its inverse.
 const ETA_NODES: usize = 20;
-/// ∜F0 of the last node: an index near 5, beyond which the shape of Fresnel's curve stays.
-const LAST_ETA: f32 = 0.82;
+/// ∜F0 of the last node, an index near 6, beyond which the shape of Fresnel's curve stays. The 10th
+/// node is at ∜0.04, the index 1.5 of nearly all surfaces.
+const LAST_ETA: f32 = 0.447_213_6 * 1.9;
 
 /// First E and C by roughness and angle, then the averages of E by roughness, then S by side
 /// (indices above 1 first), index, roughness and angle, and W and V in the same order.
@@ -257,7 +258,7 @@ mod tests {
                     let (ra, rb) = (energy.refractive(EtaPlace::of(eta)), seen.refractive(eta));
                     // Below 1 the critical angle is a step, which only the sum doesn't have.
                     let error = if eta > 1.0 { ra.reflected_blend - rb.reflected_blend } else { 0.0 };
-                    assert!(error.abs() < if cos < 0.05 { 2e-2 } else { 1.2e-2 }, "{r} {cos} {eta}: {error}");
+                    assert!(error.abs() < if cos < 0.05 { 2.5e-2 } else { 1.2e-2 }, "{r} {cos} {eta}: {error}");
                     let error = glass(eta, a, ra) - glass(eta, b, rb);
                     assert!(error.abs() < if cos < 0.05 { 1e-2 } else { 8e-3 }, "{r} {cos} {eta}: {error}");
                 }

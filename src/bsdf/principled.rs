@@ -14,6 +14,9 @@ use crate::math::{Rgb, Vec3, sqr};
 /// Where α |η − 1| is smaller, the spread of refraction can't be told from none.
 const MIN_BEND: f32 = 2e-5;
 
+/// Stands for an infinite index of refraction; the reflectance is 0.996.
+const LARGEST_IOR: f32 = 1e3;
+
 /// A surface ready to scatter. It depends on no direction, so the one of a surface without textures
 /// can be kept, one for each side.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +84,11 @@ impl Bsdf {
     /// 0, a perfect mirror.
     pub fn new(surface: &Surface, entering: bool) -> Self {
         let base = surface.base_color.map(unit);
-        let ior = if surface.ior > 0.0 { surface.ior.clamp(1e-3, 1e3) } else { 1.0 };
+        let ior = match surface.ior {
+            0.0 => LARGEST_IOR,
+            ior if ior > 0.0 => ior.clamp(1.0 / LARGEST_IOR, LARGEST_IOR),
+            _ => 1.0,
+        };
         let alpha = sqr(unit(surface.roughness));
         let rough = (alpha >= MIN_ALPHA).then(|| Rough { ggx: Ggx { alpha }, place: RoughnessPlace::of(alpha) });
         let lost = |average: Rgb| rough.map_or(Rgb::WHITE, |r| several_bounces(average, r.place.reflected_average()));
@@ -96,6 +103,9 @@ impl Bsdf {
             .then(|| GlassLayer::new(surface, base, ior, alpha, entering, below_metal * transmission));
 
         let weight = below_metal * (1.0 - transmission);
+        // Approximation: an opaque surface of an index below 1 has no critical angle, the step in
+        // which the tables can't hold.
+        let ior = ior.max(1.0 / ior);
         let fresnel = tinted(surface, ior, ior);
         let visible = weight > 0.0 && ior != 1.0 && (fresnel.f90 > 0.0 || !fresnel.f0.is_black());
         let specular = visible.then(|| SpecularLayer {

@@ -13,7 +13,8 @@ pub struct Surface {
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1; the microfacet width is its square.
     pub roughness: f32,
-    /// Index of refraction of the inside over the outside, above 0.
+    /// Index of refraction of the inside over the outside. 0 stands for infinite, as in
+    /// KHR_materials_ior; where it is below 1, opaque parts take its inverse.
     pub ior: f32,
     /// Weight of the dielectric's reflection, 0 to 1 (KHR_materials_specular).
     pub specular: f32,

@@ -21,14 +21,20 @@ impl Sampler {
 
     /// The sampler of sample `index` of pixel (`x`, `y`). Any index below 2⁶⁴ works; each run of
     /// 2³² is a sequence of its own.
+    #[inline]
     pub fn for_sample(&self, x: u32, y: u32, index: u64) -> Self {
         let pixel = u64::from(y) << 32 | u64::from(x);
-        let mut seed = mix64(mix64(self.seed ^ GOLDEN).wrapping_add(pixel.wrapping_mul(GOLDEN)));
-        let run = index >> 32;
-        if run != 0 {
-            seed = mix64(seed ^ run.wrapping_mul(GOLDEN));
-        }
-        Self { point: Point::new(seed, index as u32), ..*self }
+        let seed = mix64(mix64(self.seed ^ GOLDEN).wrapping_add(pixel.wrapping_mul(GOLDEN)));
+        Self { point: at_index(seed, index), ..*self }
+    }
+
+    /// The sampler of the `k`-th of `n` parts of this sample, for decisions that are made several
+    /// times a sample, as the directions of ambient occlusion: the parts of all samples together
+    /// are one sequence. A decision must be drawn either in parts or whole, and always in as many.
+    #[inline]
+    pub fn part(&self, k: u32, n: u32) -> Self {
+        let index = u64::from(self.point.index) * u64::from(n) + u64::from(k);
+        Self { point: at_index(self.point.seed, index), ..*self }
     }
 
     /// A number in [0, 1).
@@ -48,4 +54,12 @@ impl Sampler {
             Pattern::Independent => independent::draw_2d(&self.point, dimension),
         }
     }
+}
+
+/// The upper half of the index chooses another sequence.
+#[inline]
+fn at_index(seed: u64, index: u64) -> Point {
+    let run = index >> 32;
+    let seed = if run == 0 { seed } else { mix64(seed ^ run.wrapping_mul(GOLDEN)) };
+    Point::new(seed, index as u32)
 }

@@ -58,8 +58,8 @@ impl Pattern {
 /// What a pattern knows of a sample: which pixel (hashed, with the user's seed) and which sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    seed: u64,
-    index: u32,
+    pub(super) seed: u64,
+    pub(super) index: u32,
     /// `index` with its bits reversed, as Owen scrambling wants it in every dimension.
     reversed_index: u32,
 }

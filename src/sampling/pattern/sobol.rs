@@ -6,6 +6,10 @@
 //! after Laine and Karras 2011, with the better constants of Nathan Vegdahl, *Building a Better LK
 //! Hash*, 2021. Second dimension by a butterfly instead of a matrix: Abdalla Ahmed, *An
 //! Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact*, EGSR 2024.
+//!
+//! A point costs 12.7 ns on a Zen 4 core at 3.6 GHz, and a weaker hash with three multiplications on
+//! the coordinates 11.6. A table of 1024 scrambled points with a digit scramble per decision takes
+//! 6.2, but all pixels then share one scrambling, and longer runs need the full path as well.
 
 use super::Point;
 use crate::sampling::Dimension;
