@@ -11,7 +11,7 @@ use super::node::{BLOCK, Block, Link, Node};
 use super::ray::RaySetup;
 use super::simd::Simd;
 use super::triangle::{self, Best};
-use super::walk::walk;
+use super::walk::{Links, walk};
 use crate::math::{Bounds, DVec3, Vec3};
 
 /// Coordinates beyond this, 2^60, count as not finite: squares of their differences must not
@@ -111,23 +111,28 @@ impl Blas {
         boxes
     }
 
+    #[inline(always)]
+    fn links(&self) -> Links<Block> {
+        Links { nodes: self.nodes.as_ptr(), items: self.blocks.as_ptr() }
+    }
+
     /// Updates `best` with the nearest hit of a ray in object space.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
     pub(super) unsafe fn closest<S: Simd>(&self, ray: &RaySetup, instance: u32, best: &mut Best) {
-        let blocks = self.blocks.as_ptr();
+        let tree = self.links();
         let leaf = |best: &mut Best, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
                 // SAFETY: links are made by the builder together with the blocks.
-                unsafe { triangle::closest::<S::F4>(&*blocks.add(i), ray, instance, best) };
+                unsafe { triangle::closest::<S::F4>(&*tree.items.add(i), ray, instance, best) };
             }
             ControlFlow::Continue(())
         };
         // SAFETY: the builder's links and depth; the instruction set by contract.
-        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, ray, best, |best| best.t, leaf) };
+        unsafe { walk::<S, _, _>(&tree, self.root, ray, best, |best| best.t, leaf) };
     }
 
     /// True where a ray in object space hits anything at `0 <= t < t_max`.
@@ -136,13 +141,13 @@ impl Blas {
     /// The instruction set is available.
     #[inline(always)]
     pub(super) unsafe fn any<S: Simd>(&self, ray: &RaySetup, t_max: f32) -> bool {
-        let blocks = self.blocks.as_ptr();
+        let tree = self.links();
         let mut found = false;
         let leaf = |found: &mut bool, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
                 // SAFETY: as above.
-                if unsafe { triangle::any::<S::F4>(&*blocks.add(i), ray, t_max) } {
+                if unsafe { triangle::any::<S::F4>(&*tree.items.add(i), ray, t_max) } {
                     *found = true;
                     return ControlFlow::Break(());
                 }
@@ -150,7 +155,7 @@ impl Blas {
             ControlFlow::Continue(())
         };
         // SAFETY: as above.
-        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, ray, &mut found, |_| t_max, leaf) };
+        unsafe { walk::<S, _, _>(&tree, self.root, ray, &mut found, |_| t_max, leaf) };
         found
     }
 }

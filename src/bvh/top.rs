@@ -12,7 +12,7 @@ use super::node::{Link, Node};
 use super::ray::RaySetup;
 use super::simd::Simd;
 use super::triangle::Best;
-use super::walk::walk;
+use super::walk::{Links, walk};
 use super::{Hit, Instance};
 use crate::math::{Affine3A, Bounds, DAffine3, DMat3, Ray};
 
@@ -176,6 +176,11 @@ impl Tree {
         Self { nodes: wide.nodes, root: wide.root, bounds: wide.bounds, placed, blases }
     }
 
+    #[inline(always)]
+    fn links(&self) -> Links<Placed> {
+        Links { nodes: self.nodes.as_ptr(), items: self.placed.as_ptr() }
+    }
+
     /// The nearest hit of a ray in render space.
     ///
     /// # Safety
@@ -207,7 +212,7 @@ impl Tree {
             ControlFlow::Continue(())
         };
         // SAFETY: the builder's links and depth; the instruction set by contract.
-        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, &setup, &mut best, |best| best.t, leaf) };
+        unsafe { walk::<S, _, _>(&self.links(), self.root, &setup, &mut best, |best| best.t, leaf) };
         best
     }
 
@@ -246,7 +251,7 @@ impl Tree {
             ControlFlow::Continue(())
         };
         // SAFETY: as above.
-        unsafe { walk::<S, _>(self.nodes.as_ptr(), self.root, &setup, &mut found, |_| t_max, leaf) };
+        unsafe { walk::<S, _, _>(&self.links(), self.root, &setup, &mut found, |_| t_max, leaf) };
         found
     }
 }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use super::node::{Link, Node, STACK, WIDTH};
 use super::ray::{ROW, RaySetup};
-use super::simd::{Lanes, Simd};
+use super::simd::{Lanes, Simd, prefetch};
 
 /// The slab test of eight boxes: bit `i` is set where the ray meets box `i` between 0 and `t_max`;
 /// `near` are the distances of entry.
@@ -43,23 +43,44 @@ fn entry(near: f32, link: Link) -> Entry {
     u64::from(near.to_bits()) << 32 | u64::from(link.0)
 }
 
+/// What links lead to.
+#[derive(Clone, Copy)]
+pub(super) struct Links<Item> {
+    pub nodes: *const Node,
+    pub items: *const Item,
+}
+
+impl<Item> Links<Item> {
+    /// Begins to load what is visited a little later.
+    #[inline(always)]
+    fn prefetch(&self, link: Link) {
+        if link.is_leaf() {
+            prefetch(self.items.wrapping_add(link.items().0));
+        } else {
+            prefetch(self.nodes.wrapping_add(link.index()));
+        }
+    }
+}
+
 /// Pushes `first` and the children of the set bits of `hits`, the farthest first, but for the
 /// nearest, which is returned. Two and three, the most frequent numbers, take no loop.
 ///
 /// # Safety
 /// `hits` is not 0 and there is room on the stack.
 #[inline(always)]
-unsafe fn push_all_but_nearest(
+unsafe fn push_all_but_nearest<Item>(
     stack: &mut [MaybeUninit<Entry>; STACK],
     top: &mut usize,
     first: Entry,
     mut hits: u32,
     distances: &[f32; WIDTH],
     node: &Node,
+    tree: &Links<Item>,
 ) -> Entry {
     let mut next = || {
         let i = hits.trailing_zeros() as usize & (WIDTH - 1);
         hits &= hits - 1;
+        tree.prefetch(node.children[i]);
         (entry(distances[i], node.children[i]), hits)
     };
     let bottom = *top;
@@ -101,11 +122,11 @@ unsafe fn push_all_but_nearest(
 /// `t_max(state)`; it may shorten that, or end the walk.
 ///
 /// # Safety
-/// `root` and all links below it are valid for `nodes`, the tree is no deeper than
+/// `root` and all links below it are valid for `tree`, the tree is no deeper than
 /// [`super::node::MAX_DEPTH`], and the instruction set is available.
 #[inline(always)]
-pub(super) unsafe fn walk<S: Simd, State>(
-    nodes: *const Node,
+pub(super) unsafe fn walk<S: Simd, Item, State>(
+    tree: &Links<Item>,
     root: Link,
     ray: &RaySetup,
     state: &mut State,
@@ -122,7 +143,7 @@ pub(super) unsafe fn walk<S: Simd, State>(
                 break true;
             }
             // SAFETY: links are valid, by contract.
-            let node = unsafe { &*nodes.add(link.index()) };
+            let node = unsafe { &*tree.nodes.add(link.index()) };
             // SAFETY: the instruction set is available, by contract.
             let (mut hits, near) = unsafe { slabs::<S::F8>(node, ray, t_max(state)) };
             if hits == 0 {
@@ -137,9 +158,10 @@ pub(super) unsafe fn walk<S: Simd, State>(
             let mut distances = [0.0; WIDTH];
             // SAFETY: as above.
             unsafe { near.store(&mut distances) };
+            tree.prefetch(node.children[first]);
             let first = entry(distances[first], node.children[first]);
             // SAFETY: a level leaves at most WIDTH - 1 entries, and there are at most MAX_DEPTH levels.
-            let nearest = unsafe { push_all_but_nearest(&mut stack, &mut top, first, hits, &distances, node) };
+            let nearest = unsafe { push_all_but_nearest(&mut stack, &mut top, first, hits, &distances, node, tree) };
             link = Link(nearest as u32);
         };
         if reached && leaf(state, link).is_break() {

@@ -28,6 +28,20 @@ pub(super) trait Simd {
     type F4: Lanes<4>;
 }
 
+/// Begins to load all cache lines of `*at` where the machine has such an instruction; a hint that
+/// may name any address.
+#[inline(always)]
+pub(super) fn prefetch<T>(at: *const T) {
+    #[cfg(all(target_arch = "x86_64", not(miri)))]
+    for line in 0..size_of::<T>().div_ceil(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: prefetches access no memory.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast::<i8>().wrapping_add(64 * line)) };
+    }
+    #[cfg(not(all(target_arch = "x86_64", not(miri))))]
+    let _ = at;
+}
+
 /// `N` numbers side by side.
 ///
 /// # Safety
