@@ -1,4 +1,7 @@
 //! Any bytes through the glTF door: an error or a scene that keeps its own rules, never a panic.
+//!
+//! `cargo +nightly fuzz run gltf fuzz/corpus/gltf tests/data/gltf/corpus -- -dict=fuzz/gltf.dict`; what it finds that
+//! is new goes, minimised (`cargo fuzz cmin`), to `tests/data/gltf/corpus`, which the tests replay.
 
 #![no_main]
 

@@ -255,3 +255,70 @@ fn animation_of_nodes_lights_and_visibility_at_a_frame() {
     let slow = load_with(&glb, &ImportOptions { frame: Some(12.0), fps: 48.0, ..ImportOptions::default() });
     assert_eq!(slow.instances[0].transform.translation.x, 6.0);
 }
+
+/// Views compressed by meshoptimizer's own encoder, among them normals through its octahedral filter.
+#[cfg(feature = "meshopt")]
+#[test]
+fn meshopt_compression_gives_back_what_went_in() {
+    for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.5]];
+        let triangles = [0_u32, 1, 2, 2, 1, 3];
+        let up = meshopt::encode_filter_oct::<i8>(&[[0.0, 0.6, 0.8, 1.0]; 4], 8);
+        let pieces = [
+            (meshopt::encode_vertex_buffer(&corners).unwrap(), 12, 4, "ATTRIBUTES", "NONE"),
+            (meshopt::encode_vertex_buffer(&up).unwrap(), 4, 4, "ATTRIBUTES", "OCTAHEDRAL"),
+            (meshopt::encode_index_buffer(&triangles, 4).unwrap(), 4, 6, "TRIANGLES", "NONE"),
+            (meshopt::encode_index_sequence(&triangles, 4).unwrap(), 2, 6, "INDICES", "NONE"),
+        ];
+        let mut glb = Glb::new();
+        for (bytes, stride, count, mode, filter) in &pieces {
+            let view = glb.view(bytes);
+            let mut compressed = glb.json["bufferViews"][view].clone();
+            for (key, value) in [
+                ("byteStride", json!(stride)),
+                ("count", json!(count)),
+                ("mode", json!(mode)),
+                ("filter", json!(filter)),
+            ] {
+                compressed[key] = value;
+            }
+            // What the view says of itself is about the fallback buffer, which has no data.
+            let length = stride * count;
+            glb.json["bufferViews"][view] =
+                json!({"buffer": 1, "byteLength": length, "extensions": {(name): compressed}});
+            if *mode == "ATTRIBUTES" {
+                glb.json["bufferViews"][view]["byteStride"] = json!(stride);
+            }
+        }
+        let position =
+            glb.push("accessors", json!({"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4}));
+        let normal = json!({"bufferView": 1, "componentType": 5120, "normalized": true, "type": "VEC3", "count": 4});
+        let normal = glb.push("accessors", normal);
+        let attributes = json!({"POSITION": position, "NORMAL": normal});
+        for (view, component) in [(2, 5125), (3, 5123)] {
+            let accessor = json!({"bufferView": view, "componentType": component, "type": "SCALAR", "count": 6});
+            let indices = glb.push("accessors", accessor);
+            glb.push("meshes", json!({"primitives": [{"attributes": attributes, "indices": indices}]}));
+            glb.push("nodes", json!({"mesh": view - 2}));
+        }
+        let fallback = json!({"byteLength": 100, "extensions": {(name): {"fallback": true}}});
+        glb.json["buffers"] = json!([{"byteLength": glb.bin.len()}, fallback]);
+        glb.json["extensionsRequired"] = json!([name, "KHR_mesh_quantization"]);
+        let scene = load(&glb);
+        for mesh in &scene.meshes {
+            assert_eq!(mesh.points, corners);
+            // The codec may turn a triangle's corners round, not over.
+            let rotate = |mut t: [u32; 3]| {
+                let first = t.iter().enumerate().min_by_key(|(_, i)| **i).unwrap().0;
+                t.rotate_left(first);
+                t
+            };
+            assert_eq!(mesh.triangles.iter().copied().map(rotate).collect::<Vec<_>>(), [[0, 1, 2], [1, 3, 2]]);
+            let normal = points(mesh.normals.as_ref().unwrap())[3];
+            assert!((normal[1] - 0.6).abs() < 0.02 && (normal[2] - 0.8).abs() < 0.02, "{normal:?}");
+        }
+        // Cut short, the data is refused.
+        glb.json["bufferViews"][0]["extensions"][name]["byteLength"] = json!(9);
+        super::refused(&glb.bytes(), &["buffer view 0", "meshopt"]);
+    }
+}

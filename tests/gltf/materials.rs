@@ -213,3 +213,16 @@ fn factors_out_of_range_are_held_and_told() {
     );
     assert_eq!(material(&scene).metallic.factor, 1.0);
 }
+
+#[test]
+fn ktx2_is_read_past_where_there_is_another_image_and_refused_by_name_where_not() {
+    let mut glb = with_material(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+    glb.push("images", json!({"uri": "absent.ktx2"}));
+    glb.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+    glb.json["textures"][0]["extensions"] = json!({"KHR_texture_basisu": {"source": 1}});
+    assert!(material(&load(&glb)).base_color.texture.is_some());
+    glb.json["textures"][0].as_object_mut().unwrap().remove("source");
+    super::refused(&glb.bytes(), &["KHR_texture_basisu"]);
+    glb.json.as_object_mut().unwrap().remove("extensionsRequired");
+    load_warned(&glb, &["KHR_texture_basisu"]);
+}

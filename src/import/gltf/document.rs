@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn unknown_required_extensions_are_all_named() {
         let error = parse_str(
-            r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_lights_punctual","VENDOR_a","KHR_texture_basisu"]}"#,
+            r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_lights_punctual","VENDOR_a","KHR_texture_basisu"],"textures":[{"extensions":{"KHR_texture_basisu":{"source":0}}}]}"#,
         );
         let message = error.unwrap_err().to_string();
         assert!(message.contains("VENDOR_a, KHR_texture_basisu"), "{message}");

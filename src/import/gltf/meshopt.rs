@@ -10,8 +10,17 @@ use super::buffer::Buffers;
 use super::json::Root;
 use crate::error::{Error, Place, Result};
 
+/// The codec's blocks of up to 256 vertices cost at least a byte for every four bytes of stride.
+const LARGEST_RATIO: usize = 1024;
+
 /// Decodes every compressed view; `None` for the others.
 pub(super) fn decode_views(root: &Root, buffers: &Buffers<'_>, place: &Place) -> Result<Vec<Option<Vec<u8>>>> {
+    // Many views of the same few bytes could ask for any amount of memory.
+    let sizes = root.buffer_views.iter().filter_map(|view| view.extensions.meshopt.as_ref());
+    let total = sizes.fold(0_usize, |sum, json| sum.saturating_add(json.count.saturating_mul(json.byte_stride)));
+    if total / LARGEST_RATIO > buffers.total_bytes {
+        return Err(Error::invalid(place, format!("EXT_meshopt_compression: {total} bytes can't come from this file")));
+    }
     let decode = |(i, view): (usize, &super::json::BufferView)| {
         let Some(json) = &view.extensions.meshopt else { return Ok(None) };
         let here = place.at(format!("buffer view {i}"));
@@ -28,9 +37,7 @@ mod decoder {
 
     use super::super::buffer::Buffers;
     use super::super::json::Meshopt;
-
-    /// The codec's blocks of up to 256 vertices cost at least a byte for every four bytes of stride.
-    const LARGEST_RATIO: usize = 1024;
+    use super::LARGEST_RATIO;
 
     /// The bytes of a compressed view. The error is a sentence without place.
     pub fn decode(json: &Meshopt, buffers: &Buffers<'_>) -> Result<Vec<u8>, String> {
