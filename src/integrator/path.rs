@@ -41,8 +41,6 @@ struct Path {
     /// The last scattering's place and density, infinite for a delta: for MIS.
     from: Vec3,
     pdf: f32,
-    /// Product of squared relative indices crossed: radiance grows inside glass, roulette must not.
-    eta_scale: f32,
 }
 
 impl Path {
@@ -58,7 +56,6 @@ impl Path {
             vertex: 0,
             from: ray.o,
             pdf: f32::INFINITY,
-            eta_scale: 1.0,
         }
     }
 }
@@ -244,7 +241,6 @@ fn scatter(
         }
     }
     path.beta *= scattered.weight.sum();
-    path.eta_scale *= scattered.eta * scattered.eta;
     path.scatterings += 1;
     path.mask = match scattered.lobe {
         Lobe::Diffuse => mask::DIFFUSE,
@@ -263,7 +259,7 @@ fn survives(sampler: &Sampler, path: &mut Path) -> bool {
     if path.scatterings <= ROULETTE_AFTER {
         return true;
     }
-    let odds = (path.beta.max_component() * path.eta_scale).min(0.95);
+    let odds = path.beta.max_component().min(0.95);
     if odds >= 0.95 {
         return true;
     }
