@@ -1,6 +1,7 @@
 //! Embree 4 through its C interface, loaded at run time from wherever it is installed.
 
 use std::ffi::{c_char, c_int, c_void};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -43,7 +44,8 @@ struct RayHit {
 
 /// A loaded library with its calls for the hot loop.
 pub struct Embree {
-    library: Library,
+    /// Never unloaded, for its worker threads may outlive the last scene.
+    library: ManuallyDrop<Library>,
     intersect: unsafe extern "C" fn(Handle, *mut RayHit, *const c_void),
     occluded: unsafe extern "C" fn(Handle, *mut RayHit, *const c_void),
 }
@@ -86,7 +88,7 @@ impl Embree {
             let library = Library::new(path)?;
             let intersect = *library.get(b"rtcIntersect1\0")?;
             let occluded = *library.get(b"rtcOccluded1\0")?;
-            Ok(Arc::new(Self { library, intersect, occluded }))
+            Ok(Arc::new(Self { library: ManuallyDrop::new(library), intersect, occluded }))
         }
     }
 
