@@ -1,4 +1,4 @@
-//! What the fuzzer found worth keeping (`fuzz/`), once more.
+//! The fuzzer's corpus (`fuzz/`) once more: its seeds, and what it finds worth keeping.
 
 use penumbra::import::ImportOptions;
 
@@ -15,5 +15,5 @@ fn the_fuzzers_corpus_does_no_harm() {
         }
         count += 1;
     }
-    assert!(count > 20, "{count} files");
+    assert!(count >= 6, "{count} files");
 }

@@ -9,6 +9,7 @@ mod features;
 #[path = "../support/glb.rs"]
 mod glb;
 mod materials;
+mod mutation;
 
 use penumbra::desc::{Attribute, SceneDesc, check};
 use penumbra::error::{Error, Place, Warnings};

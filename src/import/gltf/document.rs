@@ -54,7 +54,12 @@ pub(super) fn parse(json: &[u8], place: &Place, warnings: &mut Warnings) -> Resu
     let parsed = serde_json::from_str::<Root>(text);
     match &parsed {
         Ok(root) => {
-            check_head(&root.asset.version, root.asset.min_version.as_deref(), &root.extensions_required, place)?
+            let mut required = root.extensions_required.clone();
+            // Textures that come with another image, too, need no KTX2.
+            if root.textures.iter().all(|t| t.extensions.basisu.is_none() || t.source.is_some()) {
+                required.retain(|name| name != "KHR_texture_basisu");
+            }
+            check_head(&root.asset.version, root.asset.min_version.as_deref(), &required, place)?;
         }
         // What an unsupported extension does to the rest of the file may be why it doesn't parse.
         Err(_) => {
