@@ -78,6 +78,7 @@ object!(Node {
     camera: Option<usize>,
     skin: Option<usize>,
     weights: Option<Vec<f64>>,
+    extras: serde_json::Value,
     extensions: NodeExtensions,
 });
 object!(NodeExtensions {

@@ -6,6 +6,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use serde_json::Value;
+
 use super::super::LightUnits;
 use super::json::Light;
 use crate::desc::LightKind;
@@ -13,8 +15,10 @@ use crate::desc::LightKind;
 /// Lumens of a watt, by which physical glTF units and radiometric ones are exchanged.
 const LUMENS_PER_WATT: f64 = 683.0;
 
-/// What `light` emits, or why it can't.
-pub(super) fn kind(light: &Light, units: LightUnits) -> Result<LightKind, String> {
+/// What `light` emits, or why it can't. `extras` are those of its node: the extension has no size for
+/// the sun, which stands there as `angle`, the full angle in radians (Blender's exporter writes an
+/// object's custom properties so).
+pub(super) fn kind(light: &Light, extras: &Value, units: LightUnits) -> Result<LightKind, String> {
     let (radial, distant) = match units {
         LightUnits::Spec => (1.0 / LUMENS_PER_WATT, 1.0 / LUMENS_PER_WATT),
         LightUnits::Compat => (1.0, 1.0),
@@ -33,7 +37,10 @@ pub(super) fn kind(light: &Light, units: LightUnits) -> Result<LightKind, String
             let inner = light.spot.inner_cone_angle.clamp(0.0, outer);
             Ok(LightKind::Spot { intensity: scaled(radial), inner, outer, range })
         }
-        "directional" => Ok(LightKind::Distant { irradiance: scaled(distant), angle: 0.0 }),
+        "directional" => {
+            let angle = extras["angle"].as_f64().filter(|angle| (0.0..=PI).contains(angle)).unwrap_or(0.0);
+            Ok(LightKind::Distant { irradiance: scaled(distant), angle })
+        }
         kind => Err(format!("light type '{kind}' is not known")),
     }
 }
@@ -55,10 +62,13 @@ mod tests {
             (LightUnits::Compat, 7.957_747_154_6, 3.0),
             (LightUnits::Raw, 100.0, 3.0),
         ] {
-            let Ok(LightKind::Point { intensity, range }) = kind(&light("point", written), units) else { panic!() };
+            let Ok(LightKind::Point { intensity, range }) = kind(&light("point", written), &Value::Null, units) else {
+                panic!()
+            };
             assert!((intensity[0] / expected - 1.0).abs() < 1e-9, "{units:?} {intensity:?}");
             assert!((intensity[1] / expected - 0.5).abs() < 1e-9 && intensity[2] == 0.0 && range.is_infinite());
-            let Ok(LightKind::Distant { irradiance, angle }) = kind(&light("directional", sun), units) else {
+            let Ok(LightKind::Distant { irradiance, angle }) = kind(&light("directional", sun), &Value::Null, units)
+            else {
                 panic!()
             };
             assert!((irradiance[0] - 3.0).abs() < 1e-12 && angle == 0.0, "{units:?}");
@@ -70,10 +80,22 @@ mod tests {
         let mut spot = light("spot", 1.0);
         spot.spot.inner_cone_angle = 2.0;
         spot.spot.outer_cone_angle = 3.0;
-        let Ok(LightKind::Spot { inner, outer, .. }) = kind(&spot, LightUnits::Spec) else { panic!() };
+        let Ok(LightKind::Spot { inner, outer, .. }) = kind(&spot, &Value::Null, LightUnits::Spec) else { panic!() };
         assert_eq!((inner, outer), (FRAC_PI_2, FRAC_PI_2));
         spot.spot.outer_cone_angle = 0.0;
-        assert!(kind(&spot, LightUnits::Spec).is_err());
-        assert!(kind(&light("tube", 1.0), LightUnits::Spec).is_err());
+        assert!(kind(&spot, &Value::Null, LightUnits::Spec).is_err());
+        assert!(kind(&light("tube", 1.0), &Value::Null, LightUnits::Spec).is_err());
+    }
+
+    #[test]
+    fn the_suns_size_stands_in_the_extras() {
+        for (extras, expected) in [(r#"{"angle": 0.5}"#, 0.5), (r#"{"angle": -1}"#, 0.0), ("[]", 0.0), ("null", 0.0)] {
+            let extras: Value = serde_json::from_str(extras).unwrap();
+            let Ok(LightKind::Distant { angle, .. }) = kind(&light("directional", 1.0), &extras, LightUnits::Spec)
+            else {
+                panic!()
+            };
+            assert_eq!(angle, expected);
+        }
     }
 }

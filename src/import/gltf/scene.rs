@@ -338,7 +338,8 @@ impl Builder<'_> {
             warnings.push(&placed.place, format!("names light {index} of {}; it is left out", lights.len()));
             return;
         };
-        match light::kind(json, self.options.light_units) {
+        let extras = &root.nodes[placed.node].extras;
+        match light::kind(json, extras, self.options.light_units) {
             Ok(kind) => scene.lights.push(LightDesc {
                 name: placed.name.clone(),
                 place: placed.place.clone(),
