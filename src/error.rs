@@ -3,6 +3,7 @@
 //! An [`Error`] ends a command; a [`Warning`] tells of a substitute and the work goes on. Both name
 //! a [`Place`]: the file and the node, prim or object in it.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -95,7 +96,7 @@ impl Error {
 }
 
 /// Something in the input that was replaced or left out; the render goes on.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Warning {
     /// Where.
     pub place: Place,
@@ -113,6 +114,7 @@ impl fmt::Display for Warning {
 #[derive(Clone, Debug, Default)]
 pub struct Warnings {
     list: Vec<Warning>,
+    known: HashSet<Warning>,
 }
 
 impl Warnings {
@@ -124,7 +126,7 @@ impl Warnings {
     /// Adds a warning unless the same one is there already.
     pub fn push(&mut self, place: &Place, what: impl Into<String>) {
         let warning = Warning { place: place.clone(), what: what.into() };
-        if !self.list.contains(&warning) {
+        if self.known.insert(warning.clone()) {
             self.list.push(warning);
         }
     }
