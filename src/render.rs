@@ -1,7 +1,7 @@
 //! One render: waves of samples over tiles of the picture, on all threads.
 //!
 //! A wave gives every pixel the same number of samples, so that a render that is stopped is a whole
-//! picture. A pixel's samples are summed in order on one thread at a time: the bits do not depend on
+//! picture, in which some pixels are a wave ahead. A pixel's samples are summed in order on one thread at a time: the bits do not depend on
 //! the number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::film::{Film, SampleId, Tile};
 use crate::integrator;
 use crate::sampling::Sampler;
@@ -66,15 +66,25 @@ pub struct Rendered {
 pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Result<Rendered> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build().map_err(|error| {
         Error::Unsupported {
-            place: crate::error::Place::default(),
+            place: Place::default(),
             what: format!("can't start {} render threads: {error}", settings.threads),
         }
     })?;
-    let mut film = Film::new(scene.size[0], scene.size[1], settings.passes.clone());
+    let [width, height] = scene.size;
+    // Asked for beforehand, since what runs out in the middle aborts the process.
+    let bytes = Film::bytes_needed(width, height, &settings.passes);
+    let there = usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok());
+    if !there {
+        return Err(Error::Unsupported {
+            place: Place::default(),
+            what: format!("a picture of {width}x{height} pixels needs {} MiB, which are not there", bytes >> 20),
+        });
+    }
+    let mut film = Film::new(width, height, settings.passes.clone());
     let job = Job::new(scene, settings, observer);
     pool.install(|| {
         if scene.effects.first_hit {
-            film.tiles_mut().par_iter_mut().for_each(|tile| first_hits(scene, tile));
+            film.tiles_mut().par_iter_mut().for_each(|tile| job.first_hits(tile));
         }
         let mut taken = 0;
         let mut wave = 1;
@@ -87,12 +97,6 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
     });
     job.tell();
     Ok(Rendered { film, elapsed: job.start.elapsed(), interrupted: job.cancelled.load(Ordering::Relaxed) })
-}
-
-fn first_hits(scene: &Scene, tile: &mut Tile) {
-    for (x, y) in tile.pixels() {
-        tile.set_first_hit(x, y, integrator::first_hit(scene, x, y));
-    }
 }
 
 /// What all tiles of a render share.
@@ -147,11 +151,20 @@ impl<'a> Job<'a> {
         }
     }
 
+    fn first_hits(&self, tile: &mut Tile) {
+        self.check();
+        for (x, y) in tile.pixels().filter(|_| !self.stopped()) {
+            tile.set_first_hit(x, y, integrator::first_hit(self.scene, x, y));
+        }
+    }
+
     fn render_tile(&self, tile: &mut Tile, samples: std::ops::Range<u32>) {
         for (x, y) in tile.pixels() {
-            self.check();
-            if self.stopped() {
-                return;
+            if x == tile.rect()[0] {
+                self.check();
+                if self.stopped() {
+                    return;
+                }
             }
             for index in samples.clone() {
                 let sampler = self.sampler.for_sample(x, y, u64::from(index));

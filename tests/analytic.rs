@@ -5,7 +5,7 @@ mod scene;
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{AlphaMode, ColorInput, LightKind, MaterialDesc, ScalarInput};
+use penumbra::desc::{AlphaMode, ColorInput, LightKind, MaterialDesc, ScalarInput, VolumeDesc};
 use penumbra::math::{DAffine3, DVec3};
 use penumbra::settings::{EffectsMode, Integrator, Settings};
 use scene::{Builder, close, mean, picture, settings};
@@ -178,6 +178,72 @@ fn an_occluder_between_leaves_the_unshadowed_light_as_it_was() {
     assert_eq!(mean(&picture, "Shadow", 0), 0.0);
 }
 
+#[test]
+fn an_emissive_square_does_not_shadow_itself_wherever_the_camera_stands() {
+    // Where the camera stands decides where render space begins, and with that how all is rounded.
+    let x = 0.5 / 1.25_f64.sqrt();
+    let form = 4.0 / (2.0 * PI) * 2.0 * x * x.atan();
+    for distance in [0.1, 0.3, 1.0, 2.0, 7.0, 16.0, 100.0, 1e3, 1e4] {
+        let mut builder = Builder::default();
+        let (floor, lamp) = (builder.lambert(0.5), emitter(&mut builder, 5.0, 0.0));
+        builder.ground(10.0, floor);
+        builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], lamp);
+        builder.look([0.0; 3], [distance, -0.6 * distance, 0.3 * distance], 1e-3);
+        let camera = &mut builder.desc.cameras[0];
+        camera.transform.translation *= distance;
+        let picture = picture(&builder.desc, 4, &settings("diffuse_direct,shadow", 256));
+        assert_eq!(mean(&picture, "Shadow", 0), 1.0, "camera at {distance}");
+        close(&format!("camera at {distance}"), mean(&picture, "Diffuse Direct", 0), 5.0 * form, 5e-3);
+    }
+}
+
+#[test]
+fn what_is_inside_an_absorbing_solid_is_seen_through_it() {
+    let mut builder = Builder::default();
+    let lamp = emitter(&mut builder, 1.0, 0.0);
+    let water = builder.material(MaterialDesc {
+        ior: 1.0,
+        roughness: ScalarInput::constant(0.0),
+        specular: ScalarInput::constant(0.0),
+        base_color: ColorInput::constant([1.0; 3]),
+        transmission: ScalarInput::constant(1.0),
+        volume: Some(VolumeDesc {
+            thickness: ScalarInput::constant(1.0),
+            attenuation_distance: 2.0,
+            attenuation_color: [0.25, 0.5, 1.0],
+        }),
+        ..MaterialDesc::default()
+    });
+    builder.quad([-9.0, 3.0, 9.0], [18.0, 0.0, 0.0], [0.0, 0.0, -18.0], water);
+    builder.quad([-1.0, 1.0, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0], lamp);
+    builder.look([0.0, 3.5, 0.0], DOWN, 0.1);
+    let picture = picture(&builder.desc, 4, &settings("combined", 16));
+    // Two metres of it.
+    for (channel, expected) in [(0, 0.25), (1, 0.5), (2, 1.0)] {
+        close("through water", mean(&picture, "Combined", channel), expected, 1e-3);
+    }
+}
+
+#[test]
+fn data_of_the_first_hit_looks_through_what_is_mostly_open() {
+    for (alpha, mode, depth) in [
+        (0.2, AlphaMode::Blend, 2.0),
+        (0.8, AlphaMode::Blend, 1.0),
+        (0.2, AlphaMode::Mask { cutoff: 0.5 }, 2.0),
+        (0.6, AlphaMode::Mask { cutoff: 0.5 }, 1.0),
+    ] {
+        let mut builder = Builder::default();
+        let veil = MaterialDesc { alpha: ScalarInput::constant(alpha), alpha_mode: mode, ..MaterialDesc::default() };
+        let (floor, veil) = (builder.lambert(0.5), builder.material(veil));
+        builder.ground(9.0, floor);
+        builder.quad([-1.0, 1.0, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0], veil);
+        builder.look([0.0, 1.0, 0.0], DOWN, 0.1);
+        let picture = picture(&builder.desc, 3, &settings("depth,object_index", 1));
+        close("depth", mean(&picture, "Depth", 0), depth, 1e-6);
+        assert_eq!(mean(&picture, "Object Index", 0), 3.0 - depth);
+    }
+}
+
 /// Objects of every kind of surface under several lights.
 fn busy_scene() -> Builder {
     let mut builder = Builder::default();
@@ -194,7 +260,7 @@ fn busy_scene() -> Builder {
         base_color: ColorInput::constant([0.9, 1.0, 0.9]),
         transmission: number(1.0),
         roughness: number(0.1),
-        volume: Some(penumbra::desc::VolumeDesc {
+        volume: Some(VolumeDesc {
             thickness: number(1.0),
             attenuation_distance: 0.5,
             attenuation_color: [0.5, 0.8, 0.9],
@@ -207,6 +273,16 @@ fn busy_scene() -> Builder {
         alpha_mode: AlphaMode::Blend,
         ..MaterialDesc::default()
     });
+    // Opaque, though it has an inside: that must not matter.
+    let stone = builder.material(MaterialDesc {
+        volume: Some(VolumeDesc {
+            thickness: number(1.0),
+            attenuation_distance: 0.1,
+            attenuation_color: [0.1, 0.9, 0.5],
+        }),
+        ..MaterialDesc::default()
+    });
+    builder.quad([-4.0, 0.0, -2.0], [0.0, 3.0, 0.0], [8.0, 0.0, 0.0], stone);
     builder.ground(20.0, floor);
     builder.quad([-1.0, 4.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.5, 2.0], lamp);
     for (i, material) in [metal, glass, plastic].into_iter().enumerate() {

@@ -249,3 +249,40 @@ fn an_interrupt_saves_what_is_there() {
     let picture = exr::read(&out).unwrap();
     assert!(picture.layer("Combined").unwrap().data.iter().any(|v| *v > 0.0));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_does_not_end_the_render() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("out.exr");
+    let shell = |line: String| Command::new("sh").args(["-c", &line]).output().unwrap();
+    let program = env!("CARGO_BIN_EXE_penumbra");
+    let args = format!("-o {} --size 64x64 --spp 64 --progress json", text(&out));
+    shell(format!("{program} render {} {args} 2>&1 >/dev/null | head -n 0", text(&scene)));
+    let start = Instant::now();
+    while !out.exists() && start.elapsed() < Duration::from_secs(30) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(exr::read(&out).unwrap().layer("Combined").is_some());
+    let closed = shell(format!("{program} info {} 2>&1 >&-", text(&scene)));
+    assert!(!String::from_utf8_lossy(&closed.stdout).contains("panicked"));
+}
+
+#[test]
+fn numbers_that_make_no_sense_are_refused() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let out = folder.path("out.exr");
+    let render = |args: &[&str]| penumbra(&[&["render", text(&scene), "-o", text(&out)], args].concat());
+    for args in
+        [["--frame", "nan"], ["--frame", "inf"], ["--time", "nan"], ["--frames", "9-1"], ["--ao-distance", "-1"]]
+    {
+        assert_eq!(render(&args).status.code(), Some(2), "{args:?}");
+    }
+    let huge = render(&["--size", "65536x65535", "--passes", "all"]);
+    assert_eq!(huge.status.code(), Some(1), "{}", stderr(&huge));
+    assert!(stderr(&huge).contains("65536x65535") && !out.exists(), "{}", stderr(&huge));
+    assert!(render(&["--frames", "-2--1", "--size", "4x4", "--spp", "1"]).status.success());
+    assert_eq!(folder.names(), ["out.-001.exr", "out.-002.exr", "tri.glb"]);
+}

@@ -69,7 +69,12 @@ const CORNERS: [[f32; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.
 /// A unit square above the origin, radiance 4, as two triangles.
 fn rectangle(height: f32, textured: Option<()>) -> Light {
     let corner = |i: usize| Vec3::new(CORNERS[i][0], height, CORNERS[i][1]);
-    let triangle = |index: u32, i: [usize; 3]| EmissiveTriangle { p: i.map(corner), mean: Rgb::splat(4.0), index };
+    let triangle = |index: u32, i: [usize; 3]| EmissiveTriangle {
+        p: i.map(corner),
+        mean: Rgb::splat(4.0),
+        p_err: Vec3::ZERO,
+        index,
+    };
     let triangles = vec![triangle(0, [0, 1, 2]), triangle(1, [0, 2, 3])];
     let emission = textured.map(|()| std::sync::Arc::new(Stronger) as std::sync::Arc<dyn Emission>);
     MeshLight::new(triangles, 2, emission).unwrap().into()
@@ -210,9 +215,11 @@ fn the_choice_among_lights_has_the_odds_that_it_tells() {
 #[test]
 fn a_black_image_or_mesh_is_no_light() {
     assert!(DomeImage::new(4, 2, vec![Rgb::BLACK; 8], 0.0).is_none());
-    let triangle = EmissiveTriangle { p: [Vec3::ZERO, Vec3::X, Vec3::Y], mean: Rgb::BLACK, index: 0 };
+    let triangle =
+        EmissiveTriangle { p: [Vec3::ZERO, Vec3::X, Vec3::Y], mean: Rgb::BLACK, p_err: Vec3::ZERO, index: 0 };
     assert!(MeshLight::new(vec![triangle], 1, None).is_none());
-    let flat = EmissiveTriangle { p: [Vec3::ZERO, Vec3::X, Vec3::X * 2.0], mean: Rgb::WHITE, index: 0 };
+    let flat =
+        EmissiveTriangle { p: [Vec3::ZERO, Vec3::X, Vec3::X * 2.0], mean: Rgb::WHITE, p_err: Vec3::ZERO, index: 0 };
     assert!(MeshLight::new(vec![flat], 1, None).is_none());
 }
 
@@ -230,4 +237,16 @@ fn the_dome_is_turned_as_cycles_turns_it() {
     let texels =
         (0..64 * 32).map(|i| Rgb::splat(f32::from(u8::from((47..49).contains(&(i % 64)))))).collect::<Vec<_>>();
     assert!(Dome::new(Rgb::WHITE, DomeImage::new(64, 32, texels, 0.0)).le(Vec3::Z).r > 0.99);
+}
+
+#[test]
+fn many_lights_without_power_are_still_chosen() {
+    let scene = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+    let point = Point { p: Vec3::Y, intensity: Rgb::splat(1.0), range: f32::INFINITY };
+    let needle = Light::from(Spot { point, axis: Vec3::NEG_Y, cos_inner: 1.0, cos_outer: 1.0 });
+    let set = LightSet::new(vec![needle.clone(); 40], scene);
+    assert!((set.choose(Vec3::ZERO, 0.5).unwrap().pmf - 1.0 / 40.0).abs() < 1e-6);
+    // Among others a light that loses its power to rounding keeps a share.
+    let set = LightSet::new([vec![point.into(); 39], vec![needle]].concat(), scene);
+    assert!(set.pmf(Vec3::ZERO, 39) > 0.0);
 }

@@ -5,7 +5,7 @@ use penumbra::desc::{LightKind, ProjectionDesc, SceneDesc};
 use penumbra::error::Warnings;
 use serde_json::{Value, json};
 
-use super::Outcome;
+use super::{Outcome, say};
 
 pub fn command() -> Command {
     Command::new("info")
@@ -25,9 +25,9 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied())?;
     let info = describe(&scene, &warnings);
     if args.get_flag("json") {
-        println!("{info:#}");
+        say::out(format!("{info:#}\n"));
     } else {
-        print(&info);
+        say::out(page(&info));
     }
     Ok(Outcome::Done)
 }
@@ -89,7 +89,19 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
                 LightKind::Spot { intensity, .. } => ("spot", intensity, "W/sr"),
                 LightKind::Distant { irradiance, .. } => ("distant", irradiance, "W/m2"),
             };
-            json!({ "name": &*light.name, "kind": kind, "value": value, "unit": unit })
+            let mut described = json!({ "name": &*light.name, "kind": kind, "value": value, "unit": unit });
+            if let LightKind::Spot { inner, outer, .. } = light.kind {
+                described["cone_deg"] = json!([inner.to_degrees(), outer.to_degrees()]);
+            }
+            if let LightKind::Distant { angle, .. } = light.kind {
+                described["angle_deg"] = json!(angle.to_degrees());
+            }
+            if let LightKind::Point { range, .. } | LightKind::Spot { range, .. } = light.kind
+                && range.is_finite()
+            {
+                described["range_m"] = json!(range);
+            }
+            described
         }).collect::<Vec<_>>(),
         "emissive_materials": scene.materials.iter()
             .filter(|m| !m.unlit && m.emission_strength > 0.0 && m.emission.factor.iter().any(|&c| c > 0.0))
@@ -105,60 +117,67 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
     })
 }
 
-fn print(info: &Value) {
+/// The report for people.
+fn page(info: &Value) -> String {
+    let mut page = String::new();
+    let mut line = |text: String| page += &(text + "\n");
     let list = |key: &str| info[key].as_array().cloned().unwrap_or_default();
-    println!("{}", info["scene"].as_str().unwrap_or_default());
-    println!(
+    line(info["scene"].as_str().unwrap_or_default().to_string());
+    line(format!(
         "  {} triangles in {} meshes, {} when instanced by {} instances",
         info["triangles"],
         list("meshes").len(),
         info["instanced_triangles"],
         info["instances"]
-    );
+    ));
     for mesh in list("meshes") {
-        println!(
+        line(format!(
             "  mesh {}: {} points, {} triangles, {} instances",
             mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]
-        );
+        ));
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
-    println!("  {} materials: {}", names.len(), names.join(", "));
+    line(format!("  {} materials: {}", names.len(), names.join(", ")));
     for image in list("images") {
-        println!(
+        line(format!(
             "  image {}: {}x{}, {} channels, {} bytes",
             image["name"], image["size"][0], image["size"][1], image["channels"], image["bytes"]
-        );
+        ));
     }
     for camera in list("cameras") {
         let lens = camera.get("fov_y_deg").map_or_else(
             || format!("orthographic, {} x {} m", camera["size_m"][0], camera["size_m"][1]),
             |fov| format!("perspective, {:.2} degrees from bottom to top", fov.as_f64().unwrap_or_default()),
         );
-        println!("  camera {}: {lens}", camera["name"]);
+        line(format!("  camera {}: {lens}", camera["name"]));
     }
     for light in list("lights") {
-        println!(
+        line(format!(
             "  {} light {}: {} {}",
             light["kind"].as_str().unwrap_or_default(),
             light["name"],
             numbers(&light["value"]),
             light["unit"].as_str().unwrap_or_default()
-        );
+        ));
     }
     for material in list("emissive_materials") {
-        println!(
+        line(format!(
             "  emissive material {}: {} {}",
             material["name"],
             numbers(&material["value"]),
             material["unit"].as_str().unwrap_or_default()
-        );
+        ));
     }
     if !list("variants").is_empty() {
-        println!("  variants: {}", list("variants").iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "));
+        line(format!(
+            "  variants: {}",
+            list("variants").iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ")
+        ));
     }
     for warning in list("warnings") {
-        println!("  warning: {}", warning.as_str().unwrap_or_default());
+        line(format!("  warning: {}", warning.as_str().unwrap_or_default()));
     }
+    page
 }
 
 fn numbers(value: &Value) -> String {

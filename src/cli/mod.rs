@@ -4,6 +4,7 @@ mod environment;
 mod info;
 mod progress;
 mod render;
+mod say;
 
 use std::process::ExitCode;
 
@@ -32,9 +33,9 @@ pub fn run() -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => ExitCode::from(INTERRUPTED),
         Err(error) => {
-            eprintln!("error: {error}");
+            say::err(format!("error: {error}"));
             for cause in error.chain().skip(1) {
-                eprintln!("  because: {cause}");
+                say::err(format!("  because: {cause}"));
             }
             ExitCode::from(FAILED)
         }
@@ -77,6 +78,12 @@ mod scene {
                 .default_value("spec")
                 .help("How lamps of a glTF file are meant: candela and lux, or as Blender's exporter modes"),
         ]
+    }
+
+    /// A frame is a finite number.
+    pub fn parse_frame(text: &str) -> std::result::Result<f64, String> {
+        let frame: f64 = text.parse().map_err(|_| "must be a number".to_string())?;
+        if frame.is_finite() { Ok(frame) } else { Err("must be finite".into()) }
     }
 
     pub fn path(args: &ArgMatches) -> &Path {

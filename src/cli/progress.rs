@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use penumbra::render::{Observer, Progress};
 
+use super::say;
+
 /// Set by the first Ctrl-C; the second one ends the process.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -18,7 +20,7 @@ pub fn catch_interrupts() {
     };
     // Without a handler Ctrl-C ends the process as ever, which is all that can be done then.
     if let Err(error) = ctrlc::set_handler(handler) {
-        eprintln!("warning: Ctrl-C will lose the render: {error}");
+        say::err(format!("warning: Ctrl-C will lose the render: {error}"));
     }
 }
 
@@ -75,7 +77,7 @@ impl Observer for Reporter {
                     "elapsed_s": progress.elapsed.as_secs_f64(),
                     "remaining_s": left,
                 });
-                eprintln!("{line}");
+                say::err(line.to_string());
             }
             Self::None => {}
         }

@@ -13,7 +13,7 @@ use penumbra::scene::{View, prepare};
 use penumbra::settings::{SETTINGS, Settings};
 
 use super::progress::{Reporter, catch_interrupts, clock, interrupted};
-use super::{Outcome, environment, scene};
+use super::{Outcome, environment, say, scene};
 
 pub fn command() -> Command {
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
@@ -39,7 +39,7 @@ pub fn command() -> Command {
             Arg::new("frame")
                 .long("frame")
                 .value_name("F")
-                .value_parser(value_parser!(f64))
+                .value_parser(scene::parse_frame)
                 .allow_negative_numbers(true)
                 .help("Evaluate animation at this frame, 24 per second; the file's pose at rest unless set"),
         )
@@ -48,6 +48,7 @@ pub fn command() -> Command {
                 .long("frames")
                 .value_name("A-B[xSTEP]")
                 .value_parser(parse_frames)
+                .allow_hyphen_values(true)
                 .conflicts_with("frame")
                 .help("Render several frames; #### in file names, or the end of the stem, becomes the number"),
         )
@@ -78,6 +79,10 @@ pub fn command() -> Command {
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     let settings = settings(args);
+    // Import, trees and pyramids run on as many threads as the render.
+    if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build_global() {
+        bail!("can't start {} threads: {error}", settings.threads);
+    }
     let frames: Vec<Option<f64>> = match args.get_one::<Frames>("frames") {
         Some(frames) => frames.iter().map(Some).collect(),
         None => vec![args.get_one::<f64>("frame").copied()],
@@ -139,7 +144,8 @@ fn render_frame(
         return debug_sample(scene, settings, x, y, index);
     }
     if interrupted() {
-        bail!("interrupted before the first sample: nothing to save");
+        say::err("interrupted before the first sample: nothing to save");
+        return Ok(Outcome::Interrupted);
     }
 
     let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"));
@@ -152,7 +158,7 @@ fn render_frame(
         let what =
             format!("{} samples were not finite and left out; the first: --debug-sample {x},{y},{index}", bad.count);
         warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
-        eprintln!("warning: {what}");
+        say::err(format!("warning: {what}"));
     }
     let spp = film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()));
     let metadata = Metadata {
@@ -166,7 +172,12 @@ fn render_frame(
         non_finite: bad.count,
         non_finite_first: bad.first,
         warnings: warnings.iter().map(ToString::to_string).collect(),
-        settings: SETTINGS.iter().map(|def| (def.name.to_owned(), def.get(settings))).collect(),
+        settings: SETTINGS
+            .iter()
+            .filter(|def| def.name != "spp" || settings.spp != Settings::NO_LIMIT)
+            .map(|def| (def.name.to_owned(), def.get(settings)))
+            .collect(),
+        comments: rendered.interrupted.then(|| format!("interrupted at {spp:.1} samples per pixel")),
         manifests: scene.ids.manifests(),
         ..Metadata::default()
     };
@@ -176,12 +187,15 @@ fn render_frame(
         let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
         png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
     }
+    if args.get_flag("strict") && bad.count > 0 {
+        bail!("--strict: {} samples were not finite; {} is written", bad.count, saved.display());
+    }
     let seconds = clock(rendered.elapsed.as_secs_f64());
     if rendered.interrupted {
-        eprintln!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display());
+        say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
         return Ok(Outcome::Interrupted);
     }
-    eprintln!("{}: {}x{}, {spp:.0} spp, {seconds}", out.display(), scene.size[0], scene.size[1]);
+    say::err(format!("{}: {}x{}, {spp:.0} spp, {seconds}", out.display(), scene.size[0], scene.size[1]));
     Ok(Outcome::Done)
 }
 
@@ -203,7 +217,7 @@ fn save(
 
 fn tell(warnings: &Warnings) {
     for warning in warnings.iter() {
-        eprintln!("warning: {warning}");
+        say::err(format!("warning: {warning}"));
     }
 }
 
@@ -222,7 +236,7 @@ fn debug_sample(
     let (x, y) = (x as u32, y as u32);
     let sampler = penumbra::sampling::Sampler::new(settings.sampler, settings.seed).for_sample(x, y, index);
     let (sample, weight) = penumbra::integrator::sample(scene, settings, &sampler, x, y);
-    println!("{sample:#?}\nfilter weight {weight}");
+    say::out(format!("{sample:#?}\nfilter weight {weight}\n"));
     Ok(Outcome::Done)
 }
 
@@ -242,7 +256,9 @@ impl Frames {
 
 fn parse_frames(text: &str) -> Result<Frames, String> {
     let (range, step) = text.split_once('x').unwrap_or((text, "1"));
-    let (first, last) = range.split_once('-').unwrap_or((range, range));
+    // The first character may be a sign.
+    let dash = range.char_indices().skip(1).find(|(_, c)| *c == '-').map(|(i, _)| i);
+    let (first, last) = dash.map_or((range, range), |i| (&range[..i], &range[i + 1..]));
     let number = |text: &str| text.parse::<i64>().map_err(|_| "expected A-B or A-BxSTEP, as 1-48x2".to_string());
     let frames = Frames { first: number(first)?, last: number(last)?, step: number(step)? };
     if frames.step < 1 || frames.last < frames.first {
@@ -294,6 +310,7 @@ mod tests {
     fn ranges_and_sizes_are_checked() {
         assert_eq!(parse_frames("1-7x3").unwrap().iter().collect::<Vec<_>>(), [1.0, 4.0, 7.0]);
         assert_eq!(parse_frames("5").unwrap().iter().count(), 1);
+        assert_eq!(parse_frames("-5--3").unwrap().iter().collect::<Vec<_>>(), [-5.0, -4.0, -3.0]);
         assert!(parse_frames("7-1").is_err() && parse_frames("1-3x0").is_err());
         assert_eq!(parse_size("960x540"), Ok([960, 540]));
         assert!(parse_size("0x540").is_err() && parse_size("960").is_err());

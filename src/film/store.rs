@@ -31,6 +31,12 @@ impl Film {
         Self { width, height, passes, tiles }
     }
 
+    /// Memory that a film of this size needs for its sums, in bytes.
+    pub fn bytes_needed(width: u32, height: u32, passes: &PassSet) -> u64 {
+        let stride = Layout::of(passes).stride as u64;
+        u64::from(width) * u64::from(height) * (8 * stride + 4)
+    }
+
     /// Pixels per row.
     pub fn width(&self) -> u32 {
         self.width

@@ -2,7 +2,7 @@
 
 use crate::bsdf::{ByLobe, View};
 use crate::light::{Emitter, LightSample};
-use crate::math::{Frame, Ray, Rgb};
+use crate::math::{Frame, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
 use crate::scene::{Interaction, Scene};
 
@@ -30,7 +30,7 @@ pub fn sample_light(
     let choice = scene.lights.choose(it.p, sampler.get_1d(Dimension::at_bounce(vertex, Decision::LightChoice)))?;
     let light = scene.lights.get(choice.light);
     let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::LightPoint));
-    let LightSample { li, wi, dist, pdf, delta } = light.sample_li(it.p, choice.u, u)?;
+    let LightSample { li, wi, end, pdf, delta } = light.sample_li(it.p, choice.u, u)?;
     let pdf = pdf * choice.pmf;
     let local_wi = frame.to_local(wi);
     let eval = if leaks(it, wi, local_wi.z) { None } else { Some(bsdf.eval(local_wi)) };
@@ -43,7 +43,7 @@ pub fn sample_light(
     if unoccluded.sum().is_black() && irradiance.is_black() {
         return None;
     }
-    let ray = Ray { t_max: dist, ..it.spawn(wi) };
+    let ray = end.map_or_else(|| it.spawn(wi), |end| it.spawn_to(end));
     Some(DirectLight { unoccluded, irradiance, visibility: scene.transmittance(&ray) })
 }
 

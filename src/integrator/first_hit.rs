@@ -2,22 +2,33 @@
 //! pixel's centre.
 
 use crate::film::{CryptoSample, FirstHit, PixelSample};
-use crate::math::{Frame, Vec3};
-use crate::scene::{Interaction, RayCone, Scene, mask};
+use crate::math::{Frame, Ray, Vec3};
+use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
 
 /// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first.
 pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
     let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    let Some(hit) = scene.closest_hit(&camera_ray.ray, mask::CAMERA) else {
-        return FirstHit::BACKGROUND;
-    };
-    let it = scene.interaction(&camera_ray.ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+    let Some(it) = first_opaque(scene, camera_ray.ray) else { return FirstHit::BACKGROUND };
     FirstHit {
         depth: scene.camera.view().depth(it.p),
         position: (it.p.as_dvec3() + scene.origin).as_vec3(),
         object_index: scene.ids.objects[it.instance as usize].index as f32,
         material_index: scene.ids.materials[it.material as usize].index as f32,
     }
+}
+
+/// The first surface along `ray` whose opacity is at least a half, which is where Cycles draws the
+/// line for these passes.
+fn first_opaque(scene: &Scene, mut ray: Ray) -> Option<Interaction> {
+    for _ in 0..MAX_TRANSPARENT {
+        let hit = scene.closest_hit(&ray, mask::CAMERA)?;
+        let it = scene.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+        if scene.opacity(&it) >= 0.5 {
+            return Some(it);
+        }
+        ray = it.continued(&ray, hit.t);
+    }
+    None
 }
 
 /// Fills the data that passes average over samples, as far as they are asked for.

@@ -3,6 +3,7 @@
 mod ao;
 mod direct;
 mod first_hit;
+mod media;
 mod path;
 mod shadow;
 mod split;

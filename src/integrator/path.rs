@@ -6,6 +6,7 @@
 use super::ao;
 use super::direct::{leaks, sample_light};
 use super::first_hit::describe;
+use super::media::Media;
 use super::shadow::{emission_weight, unoccluded_emission};
 use super::split::{add_scattered, shares, to_film};
 use crate::bsdf::{Bsdf, ByLobe, Lobe, View};
@@ -13,11 +14,9 @@ use crate::film::PixelSample;
 use crate::light::Emitter;
 use crate::math::{Frame, Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
-use crate::scene::{Interaction, RayCone, Scene, mask};
+use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
 use crate::settings::Settings;
 
-/// Surfaces without scattering that a path may pass before it ends.
-const MAX_TRANSPARENT: u32 = 256;
 /// Scatterings before roulette begins.
 const ROULETTE_AFTER: u32 = 3;
 
@@ -36,6 +35,8 @@ struct Path {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
+    /// Solids that the path is inside of.
+    media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
     /// The last scattering's place and density, infinite for a delta: for MIS.
@@ -53,6 +54,7 @@ impl Path {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
+            media: Media::default(),
             vertex: 0,
             from: ray.o,
             pdf: f32::INFINITY,
@@ -119,10 +121,8 @@ fn next_surface(scene: &Scene, sampler: &Sampler, path: &mut Path) -> Option<Int
         let hit = scene.closest_hit(&path.ray, path.mask)?;
         let it = scene.interaction(&path.ray, &hit, path.cone);
         path.vertex += 1;
-        if scene.effects.absorption && !it.front {
-            // A back face ends a way through the inside of its own material.
-            let sigma = scene.material(&it).absorption;
-            path.beta *= sigma.map(|s| (-s * hit.t).exp());
+        if scene.effects.absorption {
+            path.beta *= path.media.current().map(|sigma| (-sigma * hit.t).exp());
         }
         path.cone.width = path.cone.at(hit.t);
         if !scene.effects.cutouts || !scene.material(&it).is_cutout() {
@@ -134,6 +134,8 @@ fn next_surface(scene: &Scene, sampler: &Sampler, path: &mut Path) -> Option<Int
         }
         path.ray = it.continued(&path.ray, hit.t);
     }
+    // Too many layers: stopped, as a shadow ray is.
+    path.beta = Rgb::BLACK;
     None
 }
 
@@ -242,6 +244,9 @@ fn scatter(
     }
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
+    if scene.effects.absorption && scattered.lobe == Lobe::Transmission && !scene.material(it).thin {
+        path.media.cross(scene.material(it).absorption, it.front);
+    }
     path.mask = match scattered.lobe {
         Lobe::Diffuse => mask::DIFFUSE,
         Lobe::Glossy => mask::GLOSSY,

@@ -9,8 +9,8 @@ use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::power_heuristic;
 use crate::scene::{RayCone, Scene, mask};
 
-/// Emitters that one ray may pass before the rest is left out.
-const MAX_EMITTERS: u32 = 64;
+/// Triangles of emissive objects that one ray may pass before the rest is left out.
+const MAX_EMITTERS: u32 = 1024;
 
 /// Radiance along `ray` of all emitters as if each stood there alone, MIS-weighted for a direction
 /// that a surface at `p` has sampled with density `pdf`.

@@ -49,13 +49,12 @@ impl Distant {
 impl Emitter for Distant {
     fn sample_li(&self, _p: Vec3, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
         if self.is_delta() {
-            let sample =
-                LightSample { li: self.irradiance, wi: self.frame.n, dist: f32::INFINITY, pdf: 1.0, delta: true };
+            let sample = LightSample { li: self.irradiance, wi: self.frame.n, end: None, pdf: 1.0, delta: true };
             return Some(sample);
         }
         let wi = self.frame.to_world(warp::sample_cone(u, self.height));
         let pdf = warp::pdf_cone(self.height);
-        Some(LightSample { li: self.radiance, wi, dist: f32::INFINITY, pdf, delta: false })
+        Some(LightSample { li: self.radiance, wi, end: None, pdf, delta: false })
     }
 
     fn pdf_li(&self, _p: Vec3, wi: Vec3, _at: Option<&EmitterHit>) -> f32 {

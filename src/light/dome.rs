@@ -119,7 +119,7 @@ impl Emitter for Dome {
                 (wi, image.pdf(uv, sin_theta), image.lookup(uv) * self.radiance)
             }
         };
-        (pdf > 0.0).then_some(LightSample { li, wi, dist: f32::INFINITY, pdf, delta: false })
+        (pdf > 0.0).then_some(LightSample { li, wi, end: None, pdf, delta: false })
     }
 
     fn pdf_li(&self, _p: Vec3, wi: Vec3, _at: Option<&EmitterHit>) -> f32 {

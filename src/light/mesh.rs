@@ -7,7 +7,7 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use super::{Emitter, EmitterHit, LightSample};
-use crate::math::{Bounds, Rgb, Vec3, offset_ray_origin};
+use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
 use crate::sampling::{AliasTable, warp};
 
 /// One triangle in render space.
@@ -17,6 +17,8 @@ pub struct EmissiveTriangle {
     pub p: [Vec3; 3],
     /// Mean emitted radiance, by which it is chosen.
     pub mean: Rgb,
+    /// Half-width of the box in which rounding has left any of its points.
+    pub p_err: Vec3,
     /// Index of the triangle in its mesh.
     pub index: u32,
 }
@@ -93,11 +95,10 @@ impl Emitter for MeshLight {
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
-        // The shadow ray ends before the light, by more than rounding has moved the light's point.
-        let p_err = (a.abs().max(b.abs()).max(c.abs())) * (4.0 * f32::EPSILON);
-        let end = offset_ray_origin(on_light, p_err, ng, -wi);
-        let dist = (end - p).dot(wi) * (1.0 - 4.0 * f32::EPSILON);
-        (dist > 0.0).then_some(LightSample { li, wi, dist, pdf, delta: false })
+        // Rounding has moved the light's point, and moves the ray that is traced towards it from `p`.
+        let p_err = triangle.p_err + Vec3::splat(gamma(8) * p.abs().max_element());
+        let end = Some(offset_ray_origin(on_light, p_err, ng, -wi));
+        Some(LightSample { li, wi, end, pdf, delta: false })
     }
 
     fn pdf_li(&self, _p: Vec3, wi: Vec3, at: Option<&EmitterHit>) -> f32 {

@@ -27,8 +27,9 @@ pub struct LightSample {
     pub li: Rgb,
     /// Unit direction to the light.
     pub wi: Vec3,
-    /// A shadow ray along `wi` ends here, just before the light; infinite for far lights.
-    pub dist: f32,
+    /// Where a shadow ray ends: a point just before the light, by more than rounding has moved it;
+    /// `None` for lights infinitely far away along `wi`.
+    pub end: Option<Vec3>,
     /// Density in solid angle; 1 for a delta light.
     pub pdf: f32,
     /// True where no other strategy can find the light, so that the sample has MIS weight 1.

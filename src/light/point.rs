@@ -24,7 +24,7 @@ impl Emitter for Point {
         (dist > 0.0 && li.is_finite() && !li.is_black()).then(|| LightSample {
             li,
             wi: to_light / dist,
-            dist,
+            end: Some(self.p),
             pdf: 1.0,
             delta: true,
         })

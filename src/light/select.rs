@@ -19,6 +19,13 @@ pub struct LightSet {
     by_power: Option<AliasTable>,
 }
 
+/// Odds by power; those whose power is lost in `f32` still get a small share.
+fn power_table(lights: &[Light], scene: Bounds) -> Option<AliasTable> {
+    let powers: Vec<f64> = lights.iter().map(|l| f64::from(l.power(scene)).clamp(0.0, 1e30)).collect();
+    let least = (1e-3 * powers.iter().sum::<f64>() / powers.len() as f64).max(f64::MIN_POSITIVE);
+    AliasTable::new(&powers.iter().map(|p| p.max(least)).collect::<Vec<_>>())
+}
+
 /// A light that was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
@@ -34,9 +41,7 @@ impl LightSet {
     /// The lights of a scene whose box is `scene`.
     pub fn new(lights: Vec<Light>, scene: Bounds) -> Self {
         let background = (0..lights.len() as u32).filter(|&i| lights[i as usize].in_background()).collect();
-        let by_power = (lights.len() > SCAN_LIMIT)
-            .then(|| AliasTable::new(&lights.iter().map(|l| f64::from(l.power(scene))).collect::<Vec<_>>()))
-            .flatten();
+        let by_power = (lights.len() > SCAN_LIMIT).then(|| power_table(&lights, scene)).flatten();
         Self { lights, background, by_power }
     }
 

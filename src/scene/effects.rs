@@ -97,7 +97,7 @@ fn has_vertex_alpha(scene: &SceneDesc) -> bool {
 }
 
 /// True where some light can be refracted into the material.
-fn transmits(material: &MaterialDesc) -> bool {
+pub(super) fn transmits(material: &MaterialDesc) -> bool {
     scalar_can_be_positive(&material.transmission)
 }
 

@@ -144,14 +144,15 @@ impl Scene {
     /// Share of light that the surface stops or scatters at `it`; the rest passes.
     pub fn opacity(&self, it: &Interaction) -> f32 {
         let material = self.material(it);
-        let alpha = || {
+        let alpha = |it: &Interaction| {
             let alpha = self.lookups(it).scalar(&material.alpha);
             alpha * self.vertex_color(it).map_or(1.0, |c| c[3])
         };
         match material.opacity {
             Opacity::Opaque => 1.0,
-            Opacity::Mask(cutoff) => f32::from(u8::from(alpha() >= cutoff)),
-            Opacity::Blend => alpha().clamp(0.0, 1.0),
+            // The threshold of a mean is not the mean of the thresholds: always the finest level.
+            Opacity::Mask(cutoff) => f32::from(u8::from(alpha(&Interaction { footprint: 0.0, ..*it }) >= cutoff)),
+            Opacity::Blend => alpha(it).clamp(0.0, 1.0),
         }
     }
 

@@ -16,7 +16,7 @@ pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::Material;
 pub use prepare::{Prepared, View, prepare};
-pub use trace::RayCone;
+pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ use crate::bvh::Hit;
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
 
 /// Surfaces that one ray may pass unscattered before it counts as stopped.
-const MAX_TRANSPARENT: u32 = 256;
+pub const MAX_TRANSPARENT: u32 = 256;
 
 /// The footprint of a ray: a cone of width `width + spread · t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +63,13 @@ impl Interaction {
     /// A ray that leaves this point towards the unit direction `w`.
     pub fn spawn(&self, w: Vec3) -> Ray {
         Ray::new(offset_ray_origin(self.p, self.p_err, self.ng, w), w)
+    }
+
+    /// The segment from this point to `end`, a point off any surface by more than rounding; its
+    /// direction is not unit.
+    pub fn spawn_to(&self, end: Vec3) -> Ray {
+        let o = offset_ray_origin(self.p, self.p_err, self.ng, end - self.p);
+        Ray { o, d: end - o, t_max: 1.0 }
     }
 
     /// What is left of `ray` behind this point, which it met at `t`.

@@ -6,7 +6,7 @@ use super::geometry::Geometry;
 use crate::desc::{ImageDesc, LightDesc, LightKind, SceneDesc, WorldDesc};
 use crate::error::Warnings;
 use crate::light::{Distant, Dome, DomeImage, Emission, EmissiveTriangle, Light, MeshLight, Point, Spot};
-use crate::math::{DVec3, Rgb};
+use crate::math::{DVec3, Rgb, Vec3, gamma};
 use crate::scene::Material;
 use crate::scene::material::ColorInput;
 use crate::shape::Mesh;
@@ -35,7 +35,7 @@ pub fn prepare(
 }
 
 fn lamp(desc: &LightDesc, origin: DVec3, warnings: &mut Warnings) -> Option<Light> {
-    let finite = |rgb: &[f64; 3]| rgb.iter().all(|v| v.is_finite() && *v >= 0.0);
+    let finite = |rgb: &[f64; 3]| rgb.iter().all(|v| (*v as f32).is_finite() && *v >= 0.0);
     let (color, range) = match desc.kind {
         LightKind::Point { intensity, range } | LightKind::Spot { intensity, range, .. } => (intensity, range),
         LightKind::Distant { irradiance, .. } => (irradiance, f64::INFINITY),
@@ -174,9 +174,11 @@ fn mesh_light(
     };
     let triangles: Vec<EmissiveTriangle> = (0..mesh.triangles.len() as u32)
         .filter_map(|index| {
-            let p = mesh.corners(index).map(|p| instance.object_to_render.transform_point3(p));
-            let mean = emission.mean(index);
-            (!mean.is_black() && mean.is_finite()).then_some(EmissiveTriangle { p, mean, index })
+            // Blending the corners rounds as `Mesh::point` does.
+            let corners = mesh.corners(index).map(|p| instance.point(p, p.abs() * gamma(7)));
+            let p_err = corners.into_iter().fold(Vec3::ZERO, |largest, (_, p_err)| largest.max(p_err));
+            let (p, mean) = (corners.map(|(p, _)| p), emission.mean(index));
+            (!mean.is_black() && mean.is_finite()).then_some(EmissiveTriangle { p, mean, p_err, index })
         })
         .collect();
     let varies = emission.slots.iter().any(|(_, texture)| texture.is_some());

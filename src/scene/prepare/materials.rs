@@ -167,7 +167,7 @@ impl Builder<'_> {
             specular_color: self.color(&mut inputs, &desc.specular_color),
             transmission: self.scalar(&mut inputs, &desc.transmission),
             thin: volume.is_none(),
-            absorption: volume.map_or(Rgb::BLACK, |v| absorption(&v)),
+            absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
             emission: self.color(&mut inputs, &emission),
             unlit: desc.unlit,
             normal: desc
