@@ -134,9 +134,10 @@ unsafe fn distance<F: Lanes<BLOCK>>(vertices: [[F; 3]; 3], origin: [F; 3], ray: 
         let slope = n[0].mul(F::splat(ray.shear[0])).add(n[1].mul(F::splat(ray.shear[1]))).add(n[2]);
         let t = height.div(slope).mul(F::splat(ray.shear[2]));
         let reach = abs(a[0]).max(abs(a[1])).max(abs(a[2]));
-        let limit = reach.mul(abs(n[0]).add(abs(n[1])).add(abs(n[2]))).mul(F::splat(PLANE_ROUNDING));
-        // A triangle so small that this underflows is no plane to start on.
-        (t, abs(height).le(limit) & !limit.eq(F::splat(0.0)))
+        let size = abs(n[0]).add(abs(n[1])).add(abs(n[2]));
+        let limit = reach.mul(size).mul(F::splat(PLANE_ROUNDING));
+        // A triangle so small that its normal underflows is no plane to start on.
+        (t, abs(height).le(limit) & !size.eq(F::splat(0.0)))
     }
 }
 
