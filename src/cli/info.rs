@@ -149,7 +149,9 @@ fn page(info: &Value) -> String {
             || format!("orthographic, {} x {} m", camera["size_m"][0], camera["size_m"][1]),
             |fov| format!("perspective, {:.2} degrees from bottom to top", fov.as_f64().unwrap_or_default()),
         );
-        line(format!("  camera {}: {lens}", camera["name"]));
+        let node = camera["node"].as_str().filter(|node| camera["name"] != *node);
+        let node = node.map(|node| format!(" ({node})")).unwrap_or_default();
+        line(format!("  camera {}{node}: {lens}", camera["name"]));
     }
     for light in list("lights") {
         line(format!(

@@ -195,7 +195,8 @@ fn render_frame(
         say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
         return Ok(Outcome::Interrupted);
     }
-    say::err(format!("{}: {}x{}, {spp:.0} spp, {seconds}", out.display(), scene.size[0], scene.size[1]));
+    let [width, height] = scene.size;
+    say::err(format!("{}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", out.display(), prepared.camera));
     Ok(Outcome::Done)
 }
 

@@ -33,8 +33,11 @@ def parts(path):
     return found
 
 
-@pytest.mark.parametrize("scene, sky", [("still_life.glb", None), ("interior.glb", "sky.hdr"), ("field.glb", "evening.hdr")])
-def test_shipped_scenes_give_every_pass(tmp_path, scene, sky):
+# The last number is the least openness: a room is closed but for its window.
+@pytest.mark.parametrize(
+    "scene, sky, least", [("still_life.glb", None, 0.3), ("interior.glb", "sky.hdr", 0.02), ("field.glb", "evening.hdr", 0.3)]
+)
+def test_shipped_scenes_give_every_pass(tmp_path, scene, sky, least):
     sky = ["--environment", ROOT / "scenes" / sky] if sky else []
     found = render(tmp_path, scene, "--size", "96x54", "--spp", "4", "--passes", "all", *sky)
     pixels = {name: value for name, (value, _) in found.items()}
@@ -47,7 +50,7 @@ def test_shipped_scenes_give_every_pass(tmp_path, scene, sky):
     product = pixels["Shadow"] * pixels["Diffuse Direct Unshadowed"]
     assert np.allclose(product, pixels["Diffuse Direct"], rtol=1e-4, atol=1e-6)
     ao = pixels["Ambient Occlusion"]
-    assert 0.2 < ao.mean() < 1.0 and ao.min() >= 0.0
+    assert least < ao.mean() < 1.0 and ao.min() >= 0.0
     assert (pixels["Debug Sample Count"] == 4).all()
     # Every object that Cryptomatte shows has a name.
     ids, attributes = found["CryptoObject00"][0], found["Combined"][1]
