@@ -176,13 +176,37 @@ fn bad_input_gets_one_clear_error_that_names_the_file() {
 fn an_output_that_cannot_be_written_is_found_before_the_render() {
     let folder = Folder::new();
     let scene = folder.write("tri.glb", triangle().bytes());
-    for out in ["/no/such/folder/out.exr", "/dev/full", folder.0.path().to_str().unwrap()] {
+    let taken = folder.path("folder.exr");
+    std::fs::create_dir(&taken).unwrap();
+    for out in ["/no/such/folder/out.exr", text(&taken)] {
         let start = Instant::now();
         let output = penumbra(&["render", text(&scene), "-o", out, "--spp", "100000"]);
         assert_eq!(output.status.code(), Some(1));
         assert!(stderr(&output).contains(out) && stderr(&output).contains("can't write"), "{}", stderr(&output));
         assert!(start.elapsed() < Duration::from_secs(10));
     }
+}
+
+#[test]
+fn pictures_never_overwrite_what_they_are_made_of() {
+    let folder = Folder::new();
+    let scene = folder.write("tri.glb", triangle().bytes());
+    let sky = folder.write("sky.exr", b"a sky");
+    let (out, hashes) = (folder.path("out.exr"), folder.path("out.####.exr"));
+    let cases: [&[&str]; 5] = [
+        &["-o", text(&scene)],
+        &["-o", text(&out), "--preview", text(&scene)],
+        &["-o", text(&out), "--preview", text(&out)],
+        &["-o", text(&sky), "--environment", text(&sky)],
+        &["-o", text(&hashes)],
+    ];
+    for args in cases {
+        let output = penumbra(&[&["render", text(&scene), "--size", "4x4", "--spp", "1"], args].concat());
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {}", stderr(&output));
+    }
+    assert_eq!(std::fs::read(&scene).unwrap(), triangle().bytes());
+    assert_eq!(std::fs::read(&sky).unwrap(), b"a sky");
+    assert_eq!(folder.names(), ["sky.exr", "tri.glb"]);
 }
 
 #[test]

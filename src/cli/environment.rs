@@ -20,19 +20,22 @@ pub fn args() -> [Arg; 3] {
             .help("Light the scene by this lat-long image (.hdr, .exr, ...) instead of its own world"),
         number("environment-rotation")
             .value_name("DEG")
-            .default_value("0")
+            .requires("environment")
             .help("Turn it about the up axis, counter-clockwise seen from above"),
-        number("environment-strength").value_name("S").default_value("1").help("Multiply its radiance"),
+        number("environment-strength").value_name("S").requires("environment").help("Multiply its radiance"),
     ]
 }
 
 /// Replaces the world of `scene` as `args` ask.
 pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
     let Some(path) = args.get_one::<PathBuf>("environment") else { return Ok(()) };
-    let number = |name: &str| *args.get_one::<f64>(name).expect("has a default");
-    let (rotation, strength) = (number("environment-rotation"), number("environment-strength"));
-    if !(rotation.is_finite() && strength.is_finite() && strength >= 0.0) {
-        bail!("--environment-rotation and --environment-strength must be finite, the strength not negative");
+    let number = |name: &str, default: f64| args.get_one::<f64>(name).copied().unwrap_or(default);
+    let (rotation, strength) = (number("environment-rotation", 0.0), number("environment-strength", 1.0));
+    if !rotation.is_finite() {
+        bail!("--environment-rotation must be finite");
+    }
+    if !(strength.is_finite() && strength >= 0.0) {
+        bail!("--environment-strength must be finite and not negative");
     }
     let image: ImageDesc = load_image(path, color_space(path)).context("can't use --environment")?;
     scene.images.push(image);

@@ -1,6 +1,7 @@
 //! The command line: parse, load, render, write, exit code. One file for each command.
 
 mod environment;
+mod files;
 mod info;
 mod progress;
 mod render;

@@ -1,6 +1,7 @@
 //! Progress on stderr: a bar for people at a terminal, JSON lines for machines, and Ctrl-C.
 
 use std::io::IsTerminal;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -11,12 +12,14 @@ use super::say;
 /// Set by the first Ctrl-C; the second one ends the process.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Makes Ctrl-C stop the render instead of the process. A second one stops the process.
+/// Makes Ctrl-C stop the render instead of the process, and a second one the process.
 pub fn catch_interrupts() {
     let handler = || {
         if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            say::err("discarded");
             std::process::exit(i32::from(super::INTERRUPTED));
         }
+        say::err("\nstopping, and saving what is there; Ctrl-C again discards it");
     };
     // Without a handler Ctrl-C ends the process as ever, which is all that can be done then.
     if let Err(error) = ctrlc::set_handler(handler) {
@@ -32,15 +35,15 @@ pub fn interrupted() -> bool {
 /// How progress is told.
 pub enum Reporter {
     Bar(ProgressBar),
-    Json,
+    Json { output: String, frame: Option<f64> },
     None,
 }
 
 impl Reporter {
-    /// By the name that `--progress` takes.
-    pub fn new(kind: &str) -> Self {
+    /// By the name that `--progress` takes, for the picture `out` of `frame`.
+    pub fn new(kind: &str, out: &Path, frame: Option<f64>) -> Self {
         match kind {
-            "json" => Self::Json,
+            "json" => Self::Json { output: out.display().to_string(), frame },
             "bar" if std::io::stderr().is_terminal() => {
                 let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
                 let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}");
@@ -69,8 +72,10 @@ impl Observer for Reporter {
                 let left = left.map_or_else(|| "?".into(), clock);
                 bar.set_message(format!("{:.0}{of} spp  {} left", progress.spp, left));
             }
-            Self::Json => {
+            Self::Json { output, frame } => {
                 let line = serde_json::json!({
+                    "output": output,
+                    "frame": frame,
                     "done": progress.done,
                     "spp": progress.spp,
                     "target_spp": progress.target_spp,

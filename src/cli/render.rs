@@ -1,6 +1,6 @@
 //! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::SystemTime;
 
 use anyhow::{Context, bail};
@@ -8,10 +8,11 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use penumbra::error::Warnings;
 use penumbra::film::SampleId;
-use penumbra::output::{self, Metadata, exr, png};
+use penumbra::output::{Metadata, exr, png};
 use penumbra::scene::{View, prepare};
 use penumbra::settings::{SETTINGS, Settings};
 
+use super::files::{Files, save};
 use super::progress::{Reporter, catch_interrupts, clock, interrupted};
 use super::{Outcome, environment, say, scene};
 
@@ -20,7 +21,13 @@ pub fn command() -> Command {
     let command = Command::new("render")
         .about("Render a scene to a multi-layer EXR")
         .args(scene::args())
-        .arg(path("output").short('o').value_name("OUT.exr").required(true).help("The EXR file to write"))
+        .arg(
+            path("output")
+                .short('o')
+                .value_name("OUT.exr")
+                .required_unless_present("debug-sample")
+                .help("The EXR file to write"),
+        )
         .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
         .arg(
             Arg::new("camera")
@@ -87,11 +94,10 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
         Some(frames) => frames.iter().map(Some).collect(),
         None => vec![args.get_one::<f64>("frame").copied()],
     };
-    let numbered = args.contains_id("frames");
     catch_interrupts();
+    let mut told = Warnings::new();
     for frame in frames {
-        let number = frame.filter(|_| numbered);
-        if let Outcome::Interrupted = render_frame(args, &settings, frame, number)? {
+        if let Outcome::Interrupted = render_frame(args, &settings, frame, &mut told)? {
             return Ok(Outcome::Interrupted);
         }
     }
@@ -107,7 +113,7 @@ fn settings(args: &ArgMatches) -> Settings {
         {
             let flag = def.name.replace('_', "-");
             let message = format!("invalid value '{text}' for '--{flag} <{}>': {what}", def.value_name);
-            command().error(clap::error::ErrorKind::ValueValidation, message).exit();
+            command().bin_name("penumbra render").error(clap::error::ErrorKind::ValueValidation, message).exit();
         }
     }
     // Alone, the time is the rule.
@@ -121,34 +127,29 @@ fn render_frame(
     args: &ArgMatches,
     settings: &Settings,
     frame: Option<f64>,
-    number: Option<f64>,
+    told: &mut Warnings,
 ) -> anyhow::Result<Outcome> {
-    let path = |name: &str| args.get_one::<PathBuf>(name).map(|path| numbered(path, number));
-    let out = path("output").expect("required");
-    let preview = path("preview");
-    for path in [Some(&out), preview.as_ref()].into_iter().flatten() {
-        output::check_writable(path)?;
-    }
-
+    let sample = args.get_one::<[u64; 3]>("debug-sample");
+    let files = if sample.is_none() { Some(Files::of(args, frame)?) } else { None };
     let (mut desc, mut warnings) = scene::load(args, frame)?;
     environment::apply(args, &mut desc)?;
     let view = View { camera: args.get_one("camera").cloned(), size: args.get_one("size").copied() };
     let prepared = prepare(desc, &view, settings)?;
     warnings.extend(prepared.warnings.clone());
-    tell(&warnings);
+    tell(&warnings, told);
     if args.get_flag("strict") && !warnings.is_empty() {
         bail!("--strict: {} warnings about {}", warnings.len(), scene::path(args).display());
     }
     let scene = &prepared.scene;
-    if let Some(&[x, y, index]) = args.get_one::<[u64; 3]>("debug-sample") {
-        return debug_sample(scene, settings, x, y, index);
-    }
+    let Some(Files { out, preview }) = files else {
+        return sample.map_or(Ok(Outcome::Done), |&[x, y, index]| debug_sample(scene, settings, x, y, index));
+    };
     if interrupted() {
         say::err("interrupted before the first sample: nothing to save");
         return Ok(Outcome::Interrupted);
     }
 
-    let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"));
+    let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"), &out, frame);
     let rendered = penumbra::render::render(scene, settings, &reporter);
     reporter.finish();
     let rendered = rendered?;
@@ -200,25 +201,14 @@ fn render_frame(
     Ok(Outcome::Done)
 }
 
-/// Writes the picture to `out`, or where that fails (a full disk, a folder that went away) to the
-/// system's temporary folder, so that no render is lost; returns where it is.
-fn save(
-    out: &Path,
-    picture: &penumbra::film::Picture,
-    metadata: &Metadata,
-    options: &exr::Options,
-) -> anyhow::Result<PathBuf> {
-    let Err(error) = exr::write(out, picture, metadata, options) else { return Ok(out.to_owned()) };
-    let rescue = std::env::temp_dir().join(out.file_name().unwrap_or_default());
-    let rescued = rescue != out && !rescue.exists() && exr::write(&rescue, picture, metadata, options).is_ok();
-    let fate =
-        if rescued { format!("the render is saved as {}", rescue.display()) } else { "the render is lost".into() };
-    Err(anyhow::Error::from(error).context(fate))
-}
-
-fn tell(warnings: &Warnings) {
+/// Prints those of `warnings` that were not told for an earlier frame.
+fn tell(warnings: &Warnings, told: &mut Warnings) {
     for warning in warnings.iter() {
-        say::err(format!("warning: {warning}"));
+        let before = told.len();
+        told.push(&warning.place, warning.what.as_str());
+        if told.len() > before {
+            say::err(format!("warning: {warning}"));
+        }
     }
 }
 
@@ -281,31 +271,9 @@ fn parse_sample(text: &str) -> Result<[u64; 3], String> {
     parts.ok().and_then(|parts| parts.try_into().ok()).ok_or_else(|| "expected X,Y,I, as 12,34,0".into())
 }
 
-/// `path` with the frame number: in place of a run of `#`, or as `.0001` behind the stem.
-fn numbered(path: &Path, number: Option<f64>) -> PathBuf {
-    let Some(number) = number else { return path.to_owned() };
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let hashes = name.matches('#').count();
-    let new = if hashes > 0 && name.contains(&"#".repeat(hashes)) {
-        name.replacen(&"#".repeat(hashes), &format!("{number:0hashes$}"), 1)
-    } else {
-        let (stem, extension) = name.rsplit_once('.').unwrap_or((name, "exr"));
-        format!("{stem}.{number:04}.{extension}")
-    };
-    path.with_file_name(new)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn frame_numbers_go_where_the_hashes_are() {
-        let name = |path: &str| numbered(Path::new(path), Some(7.0)).display().to_string();
-        assert_eq!(name("a/b.exr"), "a/b.0007.exr");
-        assert_eq!(name("a/b_###.exr"), "a/b_007.exr");
-        assert_eq!(numbered(Path::new("a#.exr"), None), Path::new("a#.exr"));
-    }
 
     #[test]
     fn ranges_and_sizes_are_checked() {

@@ -205,8 +205,7 @@ fn warn_of_effects_to_come(desc: &MaterialDesc, warnings: &mut Warnings) {
     .filter_map(|(name, there)| there.then_some(name))
     .collect();
     if !missing.is_empty() {
-        let what =
-            format!("material \"{}\" is rendered without its {}: not computed yet", desc.name, missing.join(", "));
+        let what = format!("rendered without its {}: not computed yet", missing.join(", "));
         warnings.push(&desc.place, what);
     }
 }
