@@ -77,8 +77,8 @@ pub fn save(out: &Path, picture: &Picture, metadata: &Metadata, options: &exr::O
     let Err(error) = exr::write(out, picture, metadata, options) else { return Ok(out.to_owned()) };
     let rescue = std::env::temp_dir().join(out.file_name().unwrap_or_default());
     let rescued = rescue != out && !rescue.exists() && exr::write(&rescue, picture, metadata, options).is_ok();
-    let fate =
-        if rescued { format!("the render is saved as {}", rescue.display()) } else { "the render is lost".into() };
+    let place = if rescued { format!("is saved as {}", rescue.display()) } else { "is lost".into() };
+    let fate = format!("{}: can't be written, the render {place}", out.display());
     Err(anyhow::Error::from(error).context(fate))
 }
 
