@@ -360,3 +360,49 @@ fn neither_scale_nor_place_matters() {
         }
     }
 }
+
+#[test]
+fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
+    use penumbra::desc::{Attribute, Channel, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc};
+    use penumbra::desc::{TextureRef, TextureTransform, Wrap};
+    // A board of holes: its mean alpha is a half, and a threshold of the mean would close or open all.
+    let indirect = |cutoff: f64| {
+        let mut builder = Builder::default();
+        let board: Vec<u8> = (0..64 * 64).map(|i| if (i % 64 / 8 + i / 512) % 2 == 0 { 255 } else { 0 }).collect();
+        builder.desc.images.push(ImageDesc {
+            name: "board".into(),
+            place: Default::default(),
+            width: 64,
+            height: 64,
+            channels: 2,
+            color_space: ColorSpace::Linear,
+            pixels: PixelData::U8(board.iter().flat_map(|&alpha| [255, alpha]).collect()),
+        });
+        builder.desc.textures.push(TextureDesc {
+            place: Default::default(),
+            image: 0,
+            wrap_u: Wrap::Repeat,
+            wrap_v: Wrap::Repeat,
+            filter: Filter::Linear,
+        });
+        let texture = TextureRef { texture: 0, uv_set: 0, transform: TextureTransform::IDENTITY };
+        let floor = builder.lambert(0.8);
+        let sheet = builder.material(MaterialDesc {
+            specular: ScalarInput::constant(0.0),
+            alpha: ScalarInput { factor: 1.0, texture: Some((texture, Channel::A)) },
+            alpha_mode: AlphaMode::Mask { cutoff },
+            ..MaterialDesc::default()
+        });
+        builder.ground(50.0, floor);
+        let points = vec![[-50.0, 1.0, 50.0], [50.0, 1.0, 50.0], [50.0, 1.0, -50.0], [-50.0, 1.0, -50.0]];
+        let uvs = vec![Attribute::Point(points.iter().map(|p: &[f32; 3]| [p[0] / 4.0, p[2] / 4.0]).collect())];
+        let mesh = MeshDesc { points, triangles: vec![[0, 1, 2], [0, 2, 3]], uvs, ..MeshDesc::default() };
+        builder.instance(mesh, sheet, DAffine3::IDENTITY);
+        builder.dome(1.0);
+        builder.look([0.0; 3], [0.3, -0.2, 0.1], 0.5);
+        builder.desc.cameras[0].transform.translation *= 0.5;
+        let settings = Settings { max_bounces: 4, ..settings("diffuse_indirect,combined", 256) };
+        mean(&picture(&builder.desc, 8, &settings), "Combined", 0)
+    };
+    close("masks of cutoff 0.45 and 0.55", indirect(0.45), indirect(0.55), 0.08);
+}
