@@ -63,7 +63,7 @@ fn a_lamp_without_size_lights_by_the_inverse_square() {
     let mut builder = Builder::default();
     let material = builder.lambert(0.5);
     builder.ground(10.0, material);
-    let lamp = LightKind::Point { intensity: [3.0; 3], range: f64::INFINITY };
+    let lamp = LightKind::Point { intensity: [3.0; 3] };
     builder.light(lamp, DAffine3::from_translation(DVec3::new(1.0, 2.0, 0.0)));
     builder.look([0.0; 3], DOWN, 1e-3);
     let picture = picture(&builder.desc, 2, &settings("combined,diffuse_direct", 4));

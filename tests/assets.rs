@@ -3,10 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use penumbra::desc::ColorSpace;
+use penumbra::desc::{ColorSpace, LightDesc, LightKind};
 use penumbra::error::Warnings;
 use penumbra::film::PassSet;
 use penumbra::import::{self, ImportOptions};
+use penumbra::math::DAffine3;
 use penumbra::scene::{View, prepare};
 use penumbra::settings::Settings;
 
@@ -43,15 +44,11 @@ fn every_gltf_renders() {
     for path in found {
         let mut warnings = Warnings::new();
         let mut desc = import::scene(&path, &ImportOptions::default(), &mut warnings).unwrap();
-        if desc.world.is_none() && path.to_string_lossy().contains("flight_helmet") {
+        if path.to_string_lossy().contains("flight_helmet") {
             let image = import::load_image(&folder.join("hdri/chinese_garden_1k.hdr"), ColorSpace::Linear).unwrap();
             desc.images.push(image);
-            desc.world = Some(penumbra::desc::WorldDesc {
-                place: desc.place.clone(),
-                radiance: [1.0; 3],
-                image: Some(penumbra::desc::WorldImage { image: desc.images.len() as u32 - 1, rotation: 0.0 }),
-                visible: true,
-            });
+            let kind = LightKind::Dome { radiance: [1.0; 3], image: Some(desc.images.len() as u32 - 1) };
+            desc.lights.push(LightDesc::new("garden", desc.place.clone(), DAffine3::IDENTITY, kind));
         }
         let prepared = prepare(desc, &view, &settings).unwrap();
         let rendered = penumbra::render::render(&prepared.scene, &settings, &()).unwrap();

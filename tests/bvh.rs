@@ -99,7 +99,7 @@ impl Mesh {
 }
 
 fn single(mesh: &Mesh) -> Vec<Bvh> {
-    placed(&[mesh.blas()], &[Instance { blas: 0, object_to_render: Affine3A::IDENTITY, mask: u32::MAX }])
+    placed(&[mesh.blas()], &[Instance { blas: 0, object_to_render: Affine3A::IDENTITY, mask: u64::MAX }])
 }
 
 /// One structure for each instruction set.
@@ -109,7 +109,7 @@ fn placed(blases: &[Arc<Blas>], instances: &[Instance]) -> Vec<Bvh> {
 }
 
 /// All agree bit for bit, and with `any_hit`; the common answer.
-fn shoot(bvhs: &[Bvh], ray: &Ray, mask: u32) -> Option<Hit> {
+fn shoot(bvhs: &[Bvh], ray: &Ray, mask: u64) -> Option<Hit> {
     let bits = |hit: &Option<Hit>| hit.map(|h| (h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.triangle));
     let hit = bvhs[0].closest_hit(ray, mask);
     for bvh in bvhs {

@@ -32,6 +32,11 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    /// True where light can come from the other side of the surface.
+    pub fn transmits(&self) -> bool {
+        self.bsdf.glass.is_some()
+    }
+
     pub(super) fn new(bsdf: &'a Bsdf, wo: Vec3) -> Self {
         let side = if wo.z < 0.0 { -1.0 } else { 1.0 };
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());

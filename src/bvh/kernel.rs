@@ -12,20 +12,20 @@ use crate::math::Ray;
 /// The queries for one instruction set.
 pub(super) struct Kernel {
     pub isa: Isa,
-    closest: unsafe fn(&Tree, &Ray, u32) -> Best,
-    any: unsafe fn(&Tree, &Ray, u32) -> bool,
+    closest: unsafe fn(&Tree, &Ray, u64) -> Best,
+    any: unsafe fn(&Tree, &Ray, u64) -> bool,
 }
 
 /// Compiles both queries for an instruction set.
 macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         $(#[target_feature(enable = $features)])?
-        unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u32) -> Best {
+        unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u64) -> Best {
             // SAFETY: the features are enabled here.
             unsafe { tree.closest::<$simd>(ray, mask) }
         }
         $(#[target_feature(enable = $features)])?
-        unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u32) -> bool {
+        unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u64) -> bool {
             // SAFETY: the features are enabled here.
             unsafe { tree.any::<$simd>(ray, mask) }
         }
@@ -53,7 +53,7 @@ impl Kernel {
 
     /// See [`super::Bvh::closest_hit`].
     #[inline]
-    pub fn closest(&self, tree: &Tree, ray: &Ray, mask: u32) -> Option<Hit> {
+    pub fn closest(&self, tree: &Tree, ray: &Ray, mask: u64) -> Option<Hit> {
         if !is_plain(ray) {
             let (scaled, power) = rescaled(ray)?;
             return self.closest(tree, &scaled, mask).map(|hit| Hit { t: hit.t * power, ..hit });
@@ -65,7 +65,7 @@ impl Kernel {
 
     /// See [`super::Bvh::any_hit`].
     #[inline]
-    pub fn any(&self, tree: &Tree, ray: &Ray, mask: u32) -> bool {
+    pub fn any(&self, tree: &Tree, ray: &Ray, mask: u64) -> bool {
         if !is_plain(ray) {
             return rescaled(ray).is_some_and(|(scaled, _)| self.any(tree, &scaled, mask));
         }

@@ -37,7 +37,7 @@ pub struct Instance {
     /// From object to render space.
     pub object_to_render: Affine3A,
     /// A ray sees the instance if its own mask shares a bit with this one.
-    pub mask: u32,
+    pub mask: u64,
 }
 
 /// Where a ray meets a triangle.

@@ -41,7 +41,7 @@ struct Placed {
     /// Columns of the linear part, then the translation.
     render_to_object: [[f32; 3]; 4],
     blas: *const Blas,
-    mask: u32,
+    mask: u64,
     /// Index in the caller's list, [`Placed::IDENTITY`] added where the transform does nothing.
     id_and_flag: u32,
 }
@@ -75,13 +75,13 @@ impl Bvh {
     /// Triangles are hit from both sides. Of hits at equal `t`, the lowest instance, then triangle,
     /// wins. A ray that is not finite hits nothing.
     #[inline]
-    pub fn closest_hit(&self, ray: &Ray, mask: u32) -> Option<Hit> {
+    pub fn closest_hit(&self, ray: &Ray, mask: u64) -> Option<Hit> {
         self.kernel.closest(&self.tree, ray, mask)
     }
 
     /// True where [`Bvh::closest_hit`] would find something.
     #[inline]
-    pub fn any_hit(&self, ray: &Ray, mask: u32) -> bool {
+    pub fn any_hit(&self, ray: &Ray, mask: u64) -> bool {
         self.kernel.any(&self.tree, ray, mask)
     }
 
@@ -186,7 +186,7 @@ impl Tree {
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn closest<S: Simd>(&self, ray: &Ray, mask: u32) -> Best {
+    pub unsafe fn closest<S: Simd>(&self, ray: &Ray, mask: u64) -> Best {
         let setup = RaySetup::new(ray.o.to_array(), ray.d.to_array());
         let mut best = Best::none(ray.t_max);
         let leaf = |best: &mut Best, link: Link| {
@@ -221,7 +221,7 @@ impl Tree {
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn any<S: Simd>(&self, ray: &Ray, mask: u32) -> bool {
+    pub unsafe fn any<S: Simd>(&self, ray: &Ray, mask: u64) -> bool {
         let setup = RaySetup::new(ray.o.to_array(), ray.d.to_array());
         let t_max = ray.t_max;
         let mut found = false;

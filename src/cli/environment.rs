@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 use clap::{Arg, ArgMatches, value_parser};
 
-use penumbra::desc::{ColorSpace, ImageDesc, SceneDesc, WorldDesc, WorldImage};
+use penumbra::desc::{ColorSpace, ImageDesc, LightDesc, LightKind, SceneDesc};
 use penumbra::error::Place;
 use penumbra::import::image::load_image;
+use penumbra::math::{DAffine3, DMat3};
 
 pub fn args() -> [Arg; 3] {
     let number =
@@ -17,7 +18,7 @@ pub fn args() -> [Arg; 3] {
             .long("environment")
             .value_name("FILE")
             .value_parser(value_parser!(PathBuf))
-            .help("Light the scene by this lat-long image (.hdr, .exr, ...) instead of its own world"),
+            .help("Light the scene by this lat-long image (.hdr, .exr, ...) instead of its own domes"),
         number("environment-rotation")
             .value_name("DEG")
             .requires("environment")
@@ -26,7 +27,7 @@ pub fn args() -> [Arg; 3] {
     ]
 }
 
-/// Replaces the world of `scene` as `args` ask.
+/// Replaces the domes of `scene` as `args` ask.
 pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
     let Some(path) = args.get_one::<PathBuf>("environment") else { return Ok(()) };
     let number = |name: &str, default: f64| args.get_one::<f64>(name).copied().unwrap_or(default);
@@ -39,12 +40,10 @@ pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
     }
     let image: ImageDesc = load_image(path, color_space(path)).context("can't use --environment")?;
     scene.images.push(image);
-    scene.world = Some(WorldDesc {
-        place: Place::file(path.clone()),
-        radiance: [strength; 3],
-        image: Some(WorldImage { image: scene.images.len() as u32 - 1, rotation }),
-        visible: true,
-    });
+    scene.lights.retain(|light| !matches!(light.kind, LightKind::Dome { .. }));
+    let transform = DAffine3::from_mat3(DMat3::from_rotation_y(rotation.to_radians()));
+    let kind = LightKind::Dome { radiance: [strength; 3], image: Some(scene.images.len() as u32 - 1) };
+    scene.lights.push(LightDesc::new("environment", Place::file(path.clone()), transform, kind));
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! `penumbra info`: what was read from a scene.
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use penumbra::desc::{LightKind, ProjectionDesc, SceneDesc};
+use penumbra::desc::{ConeDesc, LightKind, ProjectionDesc, SceneDesc};
 use penumbra::error::Warnings;
 use serde_json::{Value, json};
 
@@ -85,21 +85,24 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
         }).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|light| {
             let (kind, value, unit) = match light.kind {
-                LightKind::Point { intensity, .. } => ("point", intensity, "W/sr"),
-                LightKind::Spot { intensity, .. } => ("spot", intensity, "W/sr"),
+                LightKind::Point { intensity } if light.shaping.cone.is_some() => ("spot", intensity, "W/sr"),
+                LightKind::Point { intensity } => ("point", intensity, "W/sr"),
                 LightKind::Distant { irradiance, .. } => ("distant", irradiance, "W/m2"),
+                LightKind::Sphere { radiance, .. } => ("sphere", radiance, "W/(m2 sr)"),
+                LightKind::Rect { radiance, .. } => ("rectangle", radiance, "W/(m2 sr)"),
+                LightKind::Disk { radiance, .. } => ("disk", radiance, "W/(m2 sr)"),
+                LightKind::Cylinder { radiance, .. } => ("cylinder", radiance, "W/(m2 sr)"),
+                LightKind::Dome { radiance, .. } => ("dome", radiance, "W/(m2 sr)"),
             };
             let mut described = json!({ "name": &*light.name, "kind": kind, "value": value, "unit": unit });
-            if let LightKind::Spot { inner, outer, .. } = light.kind {
+            if let Some(ConeDesc::Ramp { inner, outer }) = light.shaping.cone {
                 described["cone_deg"] = json!([inner.to_degrees(), outer.to_degrees()]);
             }
             if let LightKind::Distant { angle, .. } = light.kind {
                 described["angle_deg"] = json!(angle.to_degrees());
             }
-            if let LightKind::Point { range, .. } | LightKind::Spot { range, .. } = light.kind
-                && range.is_finite()
-            {
-                described["range_m"] = json!(range);
+            if light.decay.range.is_finite() {
+                described["range_m"] = json!(light.decay.range);
             }
             described
         }).collect::<Vec<_>>(),

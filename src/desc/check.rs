@@ -40,10 +40,24 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
             return Err(Error::invalid(&image.place, "image size and texel count differ"));
         }
     }
-    if let Some(world) = &scene.world
-        && let Some(image) = world.image
-    {
-        index(image.image, scene.images.len(), &world.place, "image")?;
+    for light in &scene.lights {
+        if let Some(image) = light.kind.image() {
+            index(image, scene.images.len(), &light.place, "image")?;
+        }
+        if let Some(ies) = light.shaping.ies {
+            index(ies.profile, scene.ies.len(), &light.place, "IES profile")?;
+        }
+    }
+    for ies in &scene.ies {
+        if ies.vertical.is_empty() || ies.candela.len() != ies.vertical.len() * ies.horizontal.len() {
+            return Err(Error::invalid(&ies.place, "IES angles and values differ in number"));
+        }
+    }
+    let of_lamps = scene.lights.iter().map(|light| (&light.links, &light.place));
+    for (links, place) in of_lamps.chain(scene.instances.iter().map(|i| (&i.links, &i.place))) {
+        for &i in links.receivers.iter().chain(&links.blockers).flat_map(|set| &set.instances) {
+            index(i, scene.instances.len(), place, "linked object")?;
+        }
     }
     Ok(())
 }

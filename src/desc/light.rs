@@ -1,4 +1,4 @@
-//! Lights and the world, as authored and already in the one internal unit.
+//! Lights that are not emissive meshes, as authored and already in the one internal unit.
 
 use std::sync::Arc;
 
@@ -13,68 +13,265 @@ pub struct LightDesc {
     pub name: Arc<str>,
     /// Where it stands in the file.
     pub place: Place,
-    /// Light to world.
+    /// Light to world. Sizes are those of `kind`, in metres of the world: the scale of the transform
+    /// does nothing but distort the cone of a spot, as in Cycles.
     pub transform: DAffine3,
     /// What and how much it emits.
     pub kind: LightKind,
-    /// Light group that it belongs to.
-    pub group: Option<Arc<str>>,
-    /// Which rays see it; the shadow flag is that of the light as an occluder.
+    /// How emission varies with direction.
+    pub shaping: ShapingDesc,
+    /// How emission varies with distance.
+    pub decay: DecayDesc,
+    /// Which rays see it, and which kinds of reflection it lights; the shadow flag means nothing,
+    /// since lamps never stop light.
     pub visibility: Visibility,
-    /// False for a light whose rays pass through everything.
-    pub cast_shadow: bool,
+    /// Whom it lights and what stops its light.
+    pub links: LightLinks,
 }
 
-/// What a light is.
+/// What a light is. Radiance is in W·sr⁻¹·m⁻², linear RGB, before shaping and decay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// A point, a delta: radiant intensity in W·sr⁻¹.
+    /// A point, a delta.
     Point {
-        /// W·sr⁻¹, linear RGB.
+        /// Radiant intensity, W·sr⁻¹.
         intensity: [f64; 3],
-        /// No light farther than this (KHR_lights_punctual's window); infinite for none.
-        range: f64,
     },
-    /// A point with a cone: full intensity inside `inner`, none outside `outer`, and between them
-    /// the square of a linear ramp in the cosine, as KHR_lights_punctual recommends.
-    Spot {
-        /// W·sr⁻¹ inside the inner cone.
-        intensity: [f64; 3],
-        /// Half angle of full intensity, radians.
-        inner: f64,
-        /// Half angle where it ends, radians.
-        outer: f64,
-        /// No light farther than this; infinite for none.
-        range: f64,
+    /// A sphere that emits on both sides; a point light of Cycles.
+    Sphere {
+        /// Metres, above 0.
+        radius: f64,
+        /// Radiance of its surface.
+        radiance: [f64; 3],
+        /// True for Cycles' soft falloff: the light is a disk of this radius that faces whoever looks.
+        facing: bool,
+    },
+    /// A rectangle in the local xy plane.
+    Rect {
+        /// Along local x, metres.
+        width: f64,
+        /// Along local y, metres.
+        height: f64,
+        /// Radiance, or the factor of the texture.
+        radiance: [f64; 3],
+        /// Full angle of the cone into which each point emits, radians: π for all of the half-space.
+        /// Cycles' spread, which keeps the power.
+        spread: f64,
+        /// True for a light that emits along local +z, too.
+        two_sided: bool,
+        /// Index into `SceneDesc::images`, seen upright from where the light shines, its top along
+        /// local +y.
+        image: Option<u32>,
+    },
+    /// An ellipse in the local xy plane.
+    Disk {
+        /// Diameter along local x, metres.
+        width: f64,
+        /// Diameter along local y, metres.
+        height: f64,
+        /// Radiance.
+        radiance: [f64; 3],
+        /// As that of a rectangle.
+        spread: f64,
+        /// True for a light that emits along local +z, too.
+        two_sided: bool,
+    },
+    /// The outside of a tube along local x, without its ends (UsdLux CylinderLight).
+    Cylinder {
+        /// Metres.
+        radius: f64,
+        /// Metres.
+        length: f64,
+        /// Radiance of its surface.
+        radiance: [f64; 3],
     },
     /// Light from infinitely far away, from one direction or a disk of directions.
     Distant {
-        /// Irradiance on a surface that faces it, W·m⁻².
+        /// Irradiance on a surface that faces it, W·m⁻², as long as the disk is above its horizon.
         irradiance: [f64; 3],
         /// Full angle of the disk, radians; 0 for one direction.
         angle: f64,
     },
+    /// What surrounds everything: constant, or a lat-long image. The image's centre is the light's
+    /// local +x, its top row is +y; u grows clockwise seen from above, as in Cycles' equirectangular
+    /// mapping.
+    Dome {
+        /// Radiance, or the factor of the image.
+        radiance: [f64; 3],
+        /// Index into `SceneDesc::images`; `None` for a constant dome.
+        image: Option<u32>,
+    },
 }
 
-/// What surrounds the scene.
+/// How the emission of a local light varies with the direction in which light leaves it. The axis is
+/// local −z.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShapingDesc {
+    /// A cone outside of which there is no light.
+    pub cone: Option<ConeDesc>,
+    /// UsdLux focus: the factor `max(cos θ, 0)^focus`; 0 for none.
+    pub focus: f64,
+    /// UsdLux focus tint: the colour that the factor fades to instead of black.
+    pub focus_tint: [f64; 3],
+    /// A measured distribution.
+    pub ies: Option<IesRef>,
+}
+
+/// The edge of a cone; angles are half angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConeDesc {
+    /// KHR_lights_punctual: the square of a linear ramp in the cosine from `outer` to `inner`.
+    Ramp {
+        /// Full intensity inside.
+        inner: f64,
+        /// None outside.
+        outer: f64,
+    },
+    /// Cycles' spot: a smoothstep of the cosine that takes the share `blend` of the cone; the
+    /// direction is that in the light's local space, scale included.
+    Blend {
+        /// None outside.
+        angle: f64,
+        /// 0 for a hard edge, 1 for a ramp up to the axis.
+        blend: f64,
+    },
+    /// UsdLux ShapingAPI: `1 − smoothstep(angle · (1 − softness), angle, θ)`.
+    Soft {
+        /// None outside.
+        angle: f64,
+        /// 0 for a hard edge.
+        softness: f64,
+    },
+}
+
+/// Use of one of `SceneDesc::ies`. The profile's vertical angle 0 is local −z, its horizontal angle 0
+/// is local +x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IesRef {
+    /// Index into `SceneDesc::ies`.
+    pub profile: u32,
+    /// UsdLux `shaping:ies:angleScale`; 0 for none.
+    pub angle_scale: f64,
+    /// True where the profile is scaled to emit what the light without it would; else to 1 at its
+    /// brightest.
+    pub keep_power: bool,
+}
+
+/// A measured distribution of intensity (IES LM-63), type C.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WorldDesc {
+pub struct IesDesc {
+    /// Name.
+    pub name: Arc<str>,
     /// Where it came from.
     pub place: Place,
-    /// Constant radiance, or the factor of the image, W·sr⁻¹·m⁻².
-    pub radiance: [f64; 3],
-    /// A lat-long image; `None` for a constant dome.
-    pub image: Option<WorldImage>,
-    /// False where the camera sees black and alpha 0 instead of the world.
-    pub visible: bool,
+    /// Vertical angles in degrees, growing, 0 is the axis.
+    pub vertical: Vec<f64>,
+    /// Horizontal angles in degrees, growing; the first is 0 and the last 0, 90, 180 or 360.
+    pub horizontal: Vec<f64>,
+    /// Candela, `horizontal.len()` rows of `vertical.len()`, finite and not negative.
+    pub candela: Vec<f64>,
 }
 
-/// A lat-long environment. The image's centre is the direction `rotation`·(+x), its top row is +y;
-/// u grows clockwise seen from above, as in Cycles' equirectangular mapping.
+/// How light falls off, in addition to the solid angle of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorldImage {
-    /// Index into `SceneDesc::images`.
-    pub image: u32,
-    /// Turn about the up axis, degrees, counter-clockwise seen from above.
-    pub rotation: f64,
+pub struct DecayDesc {
+    /// The law.
+    pub law: DecayLaw,
+    /// Cycles' Light Falloff node: the factor `d² / (smooth + d²)`; 0 for none, m².
+    pub smooth: f64,
+    /// KHR_lights_punctual's window `clamp(1 − (d / range)⁴, 0, 1)`, metres; infinite for none.
+    pub range: f64,
+}
+
+impl Default for DecayDesc {
+    fn default() -> Self {
+        Self { law: DecayLaw::Quadratic, smooth: 0.0, range: f64::INFINITY }
+    }
+}
+
+/// The law of decay over distance `d` in metres; all agree at one metre but for the polynomial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DecayLaw {
+    /// None: emission is multiplied by `d²`.
+    Constant,
+    /// `1 / d`: emission is multiplied by `d`.
+    Linear,
+    /// Physical.
+    Quadratic,
+    /// `1 / (kc + kl d + kq d²)`.
+    Polynomial {
+        /// Constant term.
+        kc: f64,
+        /// Linear term.
+        kl: f64,
+        /// Quadratic term.
+        kq: f64,
+    },
+}
+
+/// Rules of a light, lamp or emissive object alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightLinks {
+    /// Light group that it belongs to.
+    pub group: Option<Arc<str>>,
+    /// False for a light that passes through everything.
+    pub cast_shadow: bool,
+    /// Instances that it lights; `None` for all.
+    pub receivers: Option<LinkSet>,
+    /// Instances that stop its light; `None` for all that cast shadows.
+    pub blockers: Option<LinkSet>,
+}
+
+impl Default for LightLinks {
+    fn default() -> Self {
+        Self { group: None, cast_shadow: true, receivers: None, blockers: None }
+    }
+}
+
+/// Some of a scene's instances.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct LinkSet {
+    /// Indices into `SceneDesc::instances`.
+    pub instances: Vec<u32>,
+    /// True where the set is all but these.
+    pub exclude: bool,
+}
+
+impl LightDesc {
+    /// A light of `kind` with nothing special about it.
+    pub fn new(name: impl Into<Arc<str>>, place: Place, transform: DAffine3, kind: LightKind) -> Self {
+        Self {
+            name: name.into(),
+            place,
+            transform,
+            kind,
+            shaping: ShapingDesc::default(),
+            decay: DecayDesc::default(),
+            visibility: Visibility::ALL,
+            links: LightLinks::default(),
+        }
+    }
+}
+
+impl LightKind {
+    /// The image that it is textured with.
+    pub fn image(&self) -> Option<u32> {
+        match *self {
+            Self::Rect { image, .. } | Self::Dome { image, .. } => image,
+            _ => None,
+        }
+    }
+
+    /// Radiance, intensity or irradiance, whichever it is given in.
+    pub fn color(&self) -> [f64; 3] {
+        match *self {
+            Self::Point { intensity } => intensity,
+            Self::Distant { irradiance, .. } => irradiance,
+            Self::Sphere { radiance, .. }
+            | Self::Rect { radiance, .. }
+            | Self::Disk { radiance, .. }
+            | Self::Cylinder { radiance, .. }
+            | Self::Dome { radiance, .. } => radiance,
+        }
+    }
 }

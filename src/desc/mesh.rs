@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::LightLinks;
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -71,6 +72,8 @@ pub struct InstanceDesc {
     pub object_index: u32,
     /// Which rays see it.
     pub visibility: Visibility,
+    /// Rules of the light that it emits, where it emits any.
+    pub links: LightLinks,
 }
 
 /// Which kinds of ray see an object.

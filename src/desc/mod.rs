@@ -16,7 +16,9 @@ mod texture;
 pub use camera::{CameraDesc, ProjectionDesc};
 pub use check::check;
 pub use image::{ColorSpace, ImageDesc, PixelData};
-pub use light::{LightDesc, LightKind, WorldDesc, WorldImage};
+pub use light::{
+    ConeDesc, DecayDesc, DecayLaw, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc,
+};
 pub use material::{
     AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
     SheenDesc, VolumeDesc,
@@ -43,10 +45,10 @@ pub struct SceneDesc {
     pub textures: Vec<TextureDesc>,
     /// Decoded images; shared by any number of textures.
     pub images: Vec<ImageDesc>,
-    /// Lights that are not emissive meshes.
+    /// Lights that are not emissive meshes, domes included.
     pub lights: Vec<LightDesc>,
-    /// What surrounds everything; `None` where the file says nothing.
-    pub world: Option<WorldDesc>,
+    /// Measured distributions that lights use.
+    pub ies: Vec<IesDesc>,
     /// Names of the material variants that the file offers.
     pub variants: Vec<String>,
 }

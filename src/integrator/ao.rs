@@ -1,6 +1,7 @@
 //! Ambient occlusion: `A(p) = 1/π ∫ V(p, ω; distance) (n·ω) dω` about the shading normal.
 
 use crate::film::PixelSample;
+use crate::light::Shadow;
 use crate::math::{Frame, Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler, warp};
 use crate::scene::{Interaction, RayCone, Scene};
@@ -11,7 +12,7 @@ use crate::settings::Settings;
 pub fn openness(scene: &Scene, sampler: &Sampler, vertex: u32, it: &Interaction, frame: &Frame, distance: f32) -> f32 {
     let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
     let w = frame.to_world(warp::sample_cosine_hemisphere(u));
-    scene.transmittance(&Ray { t_max: distance, ..it.spawn(w) })
+    scene.transmittance(&Ray { t_max: distance, ..it.spawn(w) }, Shadow::Cast)
 }
 
 /// The distance that the settings give; without end unless set.

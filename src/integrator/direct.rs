@@ -1,7 +1,7 @@
 //! Next-event estimation: one light, one point on it, one shadow ray.
 
 use crate::bsdf::{ByLobe, View};
-use crate::light::{Emitter, LightSample};
+use crate::light::{Emitter, LightSample, Receiver};
 use crate::math::{Frame, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
 use crate::scene::{Interaction, Scene};
@@ -27,10 +27,11 @@ pub fn sample_light(
     bsdf: &View<'_>,
     want_irradiance: bool,
 ) -> Option<DirectLight> {
-    let choice = scene.lights.choose(it.p, sampler.get_1d(Dimension::at_bounce(vertex, Decision::LightChoice)))?;
+    let at = receiver(scene, it, frame, bsdf);
+    let choice = scene.lights.choose(&at, sampler.get_1d(Dimension::at_bounce(vertex, Decision::LightChoice)))?;
     let light = scene.lights.get(choice.light);
     let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::LightPoint));
-    let LightSample { li, wi, end, pdf, delta } = light.sample_li(it.p, choice.u, u)?;
+    let LightSample { li, wi, end, pdf, delta } = light.emitter.sample_li(&at, choice.u, u)?;
     let pdf = pdf * choice.pmf;
     let local_wi = frame.to_local(wi);
     let eval = if leaks(it, wi, local_wi.z) { None } else { Some(bsdf.eval(local_wi)) };
@@ -44,7 +45,13 @@ pub fn sample_light(
         return None;
     }
     let ray = end.map_or_else(|| it.spawn(wi), |end| it.spawn_to(end));
-    Some(DirectLight { unoccluded, irradiance, visibility: scene.transmittance(&ray) })
+    Some(DirectLight { unoccluded, irradiance, visibility: scene.transmittance(&ray, light.rules.shadow) })
+}
+
+/// `it` as lights see it: what is lit from one side only asks for light from that side.
+pub fn receiver(scene: &Scene, it: &Interaction, frame: &Frame, bsdf: &View<'_>) -> Receiver {
+    let n = (!bsdf.transmits()).then_some(frame.n);
+    Receiver { p: it.p, n, class: scene.instance(it.instance).receiver_class, alone: false }
 }
 
 /// True where shading and geometric normal disagree on which side `wi` is: light would leak

@@ -4,15 +4,15 @@
 //! for Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use super::ao;
-use super::direct::{leaks, sample_light};
+use super::direct::{leaks, receiver, sample_light};
 use super::first_hit::describe;
 use super::media::Media;
 use super::shadow::{emission_weight, unoccluded_emission};
 use super::split::{add_scattered, shares, to_film};
 use crate::bsdf::{Bsdf, ByLobe, Lobe, View};
 use crate::film::PixelSample;
-use crate::light::Emitter;
-use crate::math::{Frame, Ray, Rgb, Vec3};
+use crate::light::Receiver;
+use crate::math::{Frame, Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
 use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
 use crate::settings::Settings;
@@ -27,7 +27,7 @@ const SCATTERED_SPREAD: f32 = 0.25;
 struct Path {
     ray: Ray,
     cone: RayCone,
-    mask: u32,
+    mask: u64,
     /// Throughput so far.
     beta: Rgb,
     /// Applied to `beta` once the light that arrives directly has been counted.
@@ -40,7 +40,7 @@ struct Path {
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
     /// The last scattering's place and density, infinite for a delta: for MIS.
-    from: Vec3,
+    from: Receiver,
     pdf: f32,
 }
 
@@ -56,7 +56,7 @@ impl Path {
             scatterings: 0,
             media: Media::default(),
             vertex: 0,
-            from: ray.o,
+            from: Receiver::everywhere(ray.o),
             pdf: f32::INFINITY,
         }
     }
@@ -149,20 +149,19 @@ pub fn first_surface(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone) 
 fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
     if path.scatterings == 0 {
         if scene.background_visible {
-            let le: Rgb = scene.background(path.ray.d).map(|(_, le)| le).sum();
+            let le: Rgb = scene.background(path.ray.d).map(|(.., le)| le).sum();
             sample.environment += path.beta * le;
             sample.combined += path.beta * le;
             sample.alpha = 1.0;
         }
         return;
     }
-    for (light, le) in scene.background(path.ray.d) {
-        let pdf_light = if path.pdf.is_finite() {
-            scene.lights.pmf(path.from, light) * scene.lights.get(light).pdf_li(path.from, path.ray.d, None)
+    for (i, _, le) in scene.background(path.ray.d) {
+        let weight = if path.pdf.is_finite() {
+            power_heuristic(path.pdf, scene.lights.pdf_li(&path.from, i, path.ray.d, None))
         } else {
-            0.0
+            1.0
         };
-        let weight = if path.pdf.is_finite() { power_heuristic(path.pdf, pdf_light) } else { 1.0 };
         add_scattered(sample, path.shares, path.beta * le * weight, path.scatterings);
     }
 }
@@ -179,7 +178,7 @@ fn add_emission(scene: &Scene, path: &Path, it: &Interaction, sample: &mut Pixel
         sample.denoising_albedo += le;
         return;
     }
-    let weight = if path.pdf.is_finite() { emission_weight(scene, path.from, it, path.pdf) } else { 1.0 };
+    let weight = if path.pdf.is_finite() { emission_weight(scene, &path.from, it, path.pdf) } else { 1.0 };
     add_scattered(sample, path.shares, path.beta * le * weight, path.scatterings);
 }
 
@@ -229,7 +228,7 @@ fn scatter(
         return false;
     }
     path.ray = it.spawn(wi);
-    path.from = it.p;
+    path.from = receiver(scene, it, frame, bsdf);
     path.pdf = if scattered.delta { f32::INFINITY } else { scattered.pdf };
     if !scattered.delta {
         // A sample stands for the solid angle 1/pdf; textures seen by it need no finer detail.
@@ -238,7 +237,7 @@ fn scatter(
     if path.scatterings == 0 {
         path.shares = shares(scattered.weight);
         if scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK {
-            let emission = unoccluded_emission(scene, it.p, &path.ray, path.cone, scattered.pdf);
+            let emission = unoccluded_emission(scene, &path.from, &path.ray, path.cone, scattered.pdf);
             sample.unshadowed += scattered.weight.diffuse * path.beta * emission;
         }
     }

@@ -3,7 +3,7 @@
 
 use std::f32::consts::PI;
 
-use super::{Emitter, EmitterHit, LightSample};
+use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
 use crate::math::{Bounds, Frame, Rgb, Vec3, sqr};
 use crate::sampling::warp;
 
@@ -47,7 +47,7 @@ impl Distant {
 }
 
 impl Emitter for Distant {
-    fn sample_li(&self, _p: Vec3, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
+    fn sample_li(&self, _at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
         if self.is_delta() {
             let sample = LightSample { li: self.irradiance, wi: self.frame.n, end: None, pdf: 1.0, delta: true };
             return Some(sample);
@@ -57,11 +57,11 @@ impl Emitter for Distant {
         Some(LightSample { li: self.radiance, wi, end: None, pdf, delta: false })
     }
 
-    fn pdf_li(&self, _p: Vec3, wi: Vec3, _at: Option<&EmitterHit>) -> f32 {
+    fn pdf_li(&self, _at: &Receiver, wi: Vec3, _hit: Option<&EmitterHit>) -> f32 {
         if !self.is_delta() && self.contains(wi) { warp::pdf_cone(self.height) } else { 0.0 }
     }
 
-    fn le(&self, wi: Vec3) -> Rgb {
+    fn le(&self, wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
         if !self.is_delta() && self.contains(wi) { self.radiance } else { Rgb::BLACK }
     }
 
@@ -69,7 +69,11 @@ impl Emitter for Distant {
         !self.is_delta()
     }
 
-    fn importance(&self, _p: Vec3) -> f32 {
+    fn bounds(&self) -> Option<LightBounds> {
+        None
+    }
+
+    fn importance(&self, _at: &Receiver) -> f32 {
         self.irradiance.luminance()
     }
 

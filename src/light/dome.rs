@@ -7,8 +7,8 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightSample};
-use crate::math::{Bounds, Rgb, Vec3, safe_acos};
+use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
+use crate::math::{Bounds, Mat3, Rgb, Vec3, safe_acos};
 use crate::sampling::Distribution2d;
 use crate::sampling::warp;
 
@@ -29,14 +29,14 @@ pub struct DomeImage {
     /// Radiance of each texel, row by row from the top.
     texels: Arc<Vec<Rgb>>,
     distribution: Arc<Distribution2d>,
-    /// Sine and cosine of the turn about +y.
-    turn: [f32; 2],
+    /// Render space to the image's.
+    to_local: Mat3,
 }
 
 impl DomeImage {
-    /// An image of `width` × `height` texels of finite, non-negative radiance, turned by `rotation`
-    /// degrees about +y. `None` where it is black all over.
-    pub fn new(width: usize, height: usize, texels: Vec<Rgb>, rotation: f64) -> Option<Self> {
+    /// An image of `width` × `height` texels of finite, non-negative radiance. `orientation`
+    /// turns the image's space into render space. `None` where it is black all over.
+    pub fn new(width: usize, height: usize, texels: Vec<Rgb>, orientation: Mat3) -> Option<Self> {
         // Bilinear lookup carries the light of a texel into its neighbours: the density of a texel
         // follows the mean of the lookup over it, so that it is 0 only where the lookup is.
         let value = |x: usize, y: usize| f64::from(texels[y * width + x].mean());
@@ -50,8 +50,7 @@ impl DomeImage {
             mean * (edge(y) - edge(y + 1))
         })?;
         let distribution = Arc::new(distribution);
-        let (sin, cos) = rotation.to_radians().sin_cos();
-        Some(Self { width, height, texels: Arc::new(texels), distribution, turn: [sin as f32, cos as f32] })
+        Some(Self { width, height, texels: Arc::new(texels), distribution, to_local: orientation.transpose() })
     }
 
     /// Mean radiance over the sphere.
@@ -71,18 +70,16 @@ impl DomeImage {
     }
 
     fn uv_of(&self, wi: Vec3) -> [f32; 2] {
-        let [sin, cos] = self.turn;
-        let (x, z) = (wi.x * cos - wi.z * sin, wi.x * sin + wi.z * cos);
-        [0.5 + z.atan2(x) / (2.0 * PI), safe_acos(wi.y) / PI]
+        let w = self.to_local * wi;
+        [0.5 + w.z.atan2(w.x) / (2.0 * PI), safe_acos(w.y) / PI]
     }
 
     /// Direction at `uv`, and the sine of its polar angle.
     fn direction_of(&self, [u, v]: [f32; 2]) -> (Vec3, f32) {
         let (sin_phi, cos_phi) = (2.0 * PI * (u - 0.5)).sin_cos();
         let (sin_theta, cos_theta) = (PI * v).sin_cos();
-        let (x, z) = (sin_theta * cos_phi, sin_theta * sin_phi);
-        let [sin, cos] = self.turn;
-        (Vec3::new(x * cos + z * sin, cos_theta, z * cos - x * sin), sin_theta)
+        let local = Vec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi);
+        (self.to_local.transpose() * local, sin_theta)
     }
 
     /// Bilinear, around in u and clamped at the poles.
@@ -110,7 +107,7 @@ impl Dome {
 }
 
 impl Emitter for Dome {
-    fn sample_li(&self, _p: Vec3, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
+    fn sample_li(&self, _at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
         let (wi, pdf, li) = match &self.image {
             None => (warp::sample_uniform_sphere(u), 1.0 / (4.0 * PI), self.radiance),
             Some(image) => {
@@ -122,14 +119,17 @@ impl Emitter for Dome {
         (pdf > 0.0).then_some(LightSample { li, wi, end: None, pdf, delta: false })
     }
 
-    fn pdf_li(&self, _p: Vec3, wi: Vec3, _at: Option<&EmitterHit>) -> f32 {
+    fn pdf_li(&self, _at: &Receiver, wi: Vec3, _hit: Option<&EmitterHit>) -> f32 {
         match &self.image {
             None => 1.0 / (4.0 * PI),
-            Some(image) => image.pdf(image.uv_of(wi), (wi.x * wi.x + wi.z * wi.z).sqrt()),
+            Some(image) => {
+                let uv = image.uv_of(wi);
+                image.pdf(uv, (PI * uv[1]).sin())
+            }
         }
     }
 
-    fn le(&self, wi: Vec3) -> Rgb {
+    fn le(&self, wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
         match &self.image {
             None => self.radiance,
             Some(image) => image.lookup(image.uv_of(wi)) * self.radiance,
@@ -140,7 +140,11 @@ impl Emitter for Dome {
         true
     }
 
-    fn importance(&self, _p: Vec3) -> f32 {
+    fn bounds(&self) -> Option<LightBounds> {
+        None
+    }
+
+    fn importance(&self, _at: &Receiver) -> f32 {
         self.mean_irradiance
     }
 

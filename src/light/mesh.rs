@@ -6,7 +6,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightSample};
+use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
 use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
 use crate::sampling::{AliasTable, warp};
 
@@ -76,7 +76,8 @@ impl MeshLight {
 }
 
 impl Emitter for MeshLight {
-    fn sample_li(&self, p: Vec3, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+    fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+        let p = at.p;
         let triangle = &self.triangles[self.table.sample(uc).index];
         let [a, b, c] = triangle.p;
         let [b0, b1, b2] = warp::sample_triangle(u);
@@ -101,16 +102,25 @@ impl Emitter for MeshLight {
         Some(LightSample { li, wi, end, pdf, delta: false })
     }
 
-    fn pdf_li(&self, _p: Vec3, wi: Vec3, at: Option<&EmitterHit>) -> f32 {
-        let Some(at) = at else { return 0.0 };
+    fn pdf_li(&self, _at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
+        let Some(at) = hit else { return 0.0 };
         let pdf = self.pdf_area[at.triangle as usize] * at.dist * at.dist / at.ng.dot(wi).abs();
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    fn importance(&self, p: Vec3) -> f32 {
-        // Not nearer than the light's own radius: inside of its box the distance says nothing.
-        let dist_squared = self.bounds.center().distance_squared(p).max(self.bounds.radius().powi(2));
-        self.power / (4.0 * PI * dist_squared.max(f32::MIN_POSITIVE))
+    fn bounds(&self) -> Option<LightBounds> {
+        Some(LightBounds {
+            bounds: self.bounds,
+            axis: Vec3::Z,
+            cos_normals: -1.0,
+            cos_emission: 0.0,
+            intensity: self.power / (4.0 * PI),
+            two_sided: true,
+        })
+    }
+
+    fn importance(&self, at: &Receiver) -> f32 {
+        self.bounds().map_or(0.0, |bounds| bounds.importance(at))
     }
 
     fn power(&self, _scene: Bounds) -> f32 {

@@ -1,23 +1,42 @@
 //! Emitters: one file each, one list, and the choice among them.
 //!
-//! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs`, and a
-//! line in `tests/lights.rs`.
+//! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
+//! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
+mod bounds;
 mod distant;
 mod dome;
+mod light;
 mod mesh;
 mod point;
+mod profile;
 mod select;
-mod spot;
 
+pub use bounds::LightBounds;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
+pub use light::{Light, Rules, Seen, Shadow};
 pub use mesh::{Emission, EmissiveTriangle, MeshLight};
 pub use point::Point;
+pub use profile::Profile;
 pub use select::{Choice, LightSet};
-pub use spot::Spot;
 
 use crate::math::{Bounds, Rgb, Vec3};
+
+/// A point that asks for light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Receiver {
+    /// Render space.
+    pub p: Vec3,
+    /// Unit normal of the side from which light can be scattered; `None` where it can come from any.
+    pub n: Option<Vec3>,
+    /// Which of the classes of receivers that light linking tells apart.
+    pub class: u16,
+    /// True where light sampling is the only strategy: any light that may reach the point must then
+    /// have a density above 0. Else directions that the surface samples find the light, too, and
+    /// light sampling may leave to them what they do better (MIS compensation, Karlík et al. 2019).
+    pub alone: bool,
+}
 
 /// What a light sends to a point, as sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,28 +56,41 @@ pub struct LightSample {
 }
 
 /// A point on an emitter that a ray has found.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmitterHit {
-    /// Distance from the ray's origin along its unit direction.
+    /// Distance from the receiver along the ray's unit direction.
     pub dist: f32,
     /// Geometric normal there, unit.
     pub ng: Vec3,
     /// Which triangle of a mesh.
     pub triangle: u32,
+    /// Where on the emitter: barycentrics of a mesh's triangle, texture coordinates of a lamp.
+    pub uv: [f32; 2],
 }
 
 /// What the engine asks of a light. Points and directions are in render space.
+///
+/// Emitters are of three kinds: *lamps* have a shape of their own, which a ray meets by
+/// [`Emitter::hit`]; *background* lights are infinitely far away; a *mesh* light's triangles are those
+/// of an object in the scene. Lamps never stop light.
 pub trait Emitter {
-    /// Chooses a point of the light as seen from `p`. `None` where nothing can arrive.
-    fn sample_li(&self, p: Vec3, uc: f32, u: [f32; 2]) -> Option<LightSample>;
+    /// Chooses a point of the light as seen from `at`, by one number and a point. `None` where the
+    /// point chosen sends nothing.
+    fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample>;
 
-    /// Density in solid angle with which [`Emitter::sample_li`] from `p` chooses direction `wi`,
-    /// where a ray along it meets the light at `at`; 0 for delta lights.
-    fn pdf_li(&self, p: Vec3, wi: Vec3, at: Option<&EmitterHit>) -> f32;
+    /// Density in solid angle with which [`Emitter::sample_li`] at `at` chooses direction `wi`, where
+    /// a ray along it meets the light at `hit` (`None` for background lights); 0 for delta lights.
+    fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32;
 
-    /// Radiance of the background along `wi`, for lights that are there; black for the others,
-    /// whose emission is that of the surface that a ray hits.
-    fn le(&self, _wi: Vec3) -> Rgb {
+    /// Where a ray from `p` along the unit direction `wi` meets a lamp; `None` where it misses, meets a
+    /// dark side, or the light is no lamp.
+    fn hit(&self, _p: Vec3, _wi: Vec3) -> Option<EmitterHit> {
+        None
+    }
+
+    /// Radiance that a ray along `wi` gets from a lamp that it has met at `hit`, or from a background
+    /// light (`None`). Black for mesh lights, whose emission is the surface's.
+    fn le(&self, _wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
         Rgb::BLACK
     }
 
@@ -67,9 +99,12 @@ pub trait Emitter {
         false
     }
 
-    /// Unoccluded irradiance that may arrive around `p`, roughly: decides how often the light is
-    /// chosen. Positive wherever the light can reach.
-    fn importance(&self, p: Vec3) -> f32;
+    /// Where it is and where it shines; `None` for lights infinitely far away.
+    fn bounds(&self) -> Option<LightBounds>;
+
+    /// Unoccluded irradiance that light sampling may bring to `at`, roughly: decides how often the
+    /// light is chosen. Positive wherever [`Emitter::sample_li`] can give light.
+    fn importance(&self, at: &Receiver) -> f32;
 
     /// Emitted power in W, luminance; for far lights the power that reaches `scene`.
     fn power(&self, scene: Bounds) -> f32;
@@ -77,35 +112,41 @@ pub trait Emitter {
 
 /// The list of emitters: an enum that passes each question on to its variant.
 macro_rules! emitters {
-    ($($name:ident),+) => {
+    ($($name:ident),+ $(,)?) => {
         /// Any emitter.
         #[derive(Clone, Debug)]
-        pub enum Light {
+        pub enum AnyEmitter {
             $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name),)+
         }
 
-        impl Emitter for Light {
-            fn sample_li(&self, p: Vec3, uc: f32, u: [f32; 2]) -> Option<LightSample> {
-                match self { $(Self::$name(light) => light.sample_li(p, uc, u),)+ }
+        impl Emitter for AnyEmitter {
+            fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+                match self { $(Self::$name(light) => light.sample_li(at, uc, u),)+ }
             }
-            fn pdf_li(&self, p: Vec3, wi: Vec3, at: Option<&EmitterHit>) -> f32 {
-                match self { $(Self::$name(light) => light.pdf_li(p, wi, at),)+ }
+            fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
+                match self { $(Self::$name(light) => light.pdf_li(at, wi, hit),)+ }
             }
-            fn le(&self, wi: Vec3) -> Rgb {
-                match self { $(Self::$name(light) => light.le(wi),)+ }
+            fn hit(&self, p: Vec3, wi: Vec3) -> Option<EmitterHit> {
+                match self { $(Self::$name(light) => light.hit(p, wi),)+ }
+            }
+            fn le(&self, wi: Vec3, hit: Option<&EmitterHit>) -> Rgb {
+                match self { $(Self::$name(light) => light.le(wi, hit),)+ }
             }
             fn in_background(&self) -> bool {
                 match self { $(Self::$name(light) => light.in_background(),)+ }
             }
-            fn importance(&self, p: Vec3) -> f32 {
-                match self { $(Self::$name(light) => light.importance(p),)+ }
+            fn bounds(&self) -> Option<LightBounds> {
+                match self { $(Self::$name(light) => light.bounds(),)+ }
+            }
+            fn importance(&self, at: &Receiver) -> f32 {
+                match self { $(Self::$name(light) => light.importance(at),)+ }
             }
             fn power(&self, scene: Bounds) -> f32 {
                 match self { $(Self::$name(light) => light.power(scene),)+ }
             }
         }
 
-        $(impl From<$name> for Light {
+        $(impl From<$name> for AnyEmitter {
             fn from(light: $name) -> Self {
                 Self::$name(light)
             }
@@ -113,10 +154,22 @@ macro_rules! emitters {
     };
 }
 
-emitters!(Point, Spot, Distant, Dome, MeshLight);
+emitters!(
+    Point, // a delta
+    Distant, Dome, MeshLight,
+);
 
-/// KHR_lights_punctual's window: the factor that brings a light to 0 at `range`,
-/// `clamp(1 − (d/range)⁴, 0, 1)`; 1 where the range is infinite.
-fn range_window(dist: f32, range: f32) -> f32 {
-    if range.is_finite() { (1.0 - (dist / range).powi(4)).clamp(0.0, 1.0) } else { 1.0 }
+impl AnyEmitter {
+    /// True for a light with a shape of its own, which rays find by [`Emitter::hit`] alone.
+    pub fn is_lamp(&self) -> bool {
+        !matches!(self, Self::Point(_) | Self::Distant(_) | Self::Dome(_) | Self::MeshLight(_))
+    }
+}
+
+impl Receiver {
+    /// A point that light can reach from any side, lit by all lights, whose light the directions that
+    /// a surface samples find, too.
+    pub fn everywhere(p: Vec3) -> Self {
+        Self { p, n: None, class: 0, alone: false }
+    }
 }

@@ -1,41 +1,50 @@
 //! A point without size: `E = I cos θ / d²`.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightSample, range_window};
+use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver};
 use crate::math::{Bounds, Rgb, Vec3};
 
-/// A point light, a delta in position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A point light, a delta in position; with a cone in its profile, a spot light.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Render space.
     pub p: Vec3,
     /// Radiant intensity, W·sr⁻¹.
     pub intensity: Rgb,
-    /// No light farther than this; infinite for none.
-    pub range: f32,
+    /// Shaping and decay.
+    pub profile: Option<Arc<Profile>>,
 }
 
 impl Emitter for Point {
-    fn sample_li(&self, p: Vec3, _uc: f32, _u: [f32; 2]) -> Option<LightSample> {
-        let to_light = self.p - p;
+    fn sample_li(&self, at: &Receiver, _uc: f32, _u: [f32; 2]) -> Option<LightSample> {
+        let to_light = self.p - at.p;
         let dist = to_light.length();
-        let li = self.intensity * (range_window(dist, self.range) / (dist * dist));
-        (dist > 0.0 && li.is_finite() && !li.is_black()).then(|| LightSample {
-            li,
-            wi: to_light / dist,
-            end: Some(self.p),
-            pdf: 1.0,
-            delta: true,
-        })
+        let wi = to_light / dist;
+        let factor = self.profile.as_ref().map_or(Rgb::WHITE, |profile| profile.factor(-wi, dist));
+        let li = self.intensity * factor * (1.0 / (dist * dist));
+        let arrives = dist > 0.0 && li.is_finite() && !li.is_black();
+        arrives.then_some(LightSample { li, wi, end: Some(self.p), pdf: 1.0, delta: true })
     }
 
-    fn pdf_li(&self, _p: Vec3, _wi: Vec3, _at: Option<&EmitterHit>) -> f32 {
+    fn pdf_li(&self, _at: &Receiver, _wi: Vec3, _hit: Option<&EmitterHit>) -> f32 {
         0.0
     }
 
-    fn importance(&self, p: Vec3) -> f32 {
-        self.intensity.luminance() / self.p.distance_squared(p).max(f32::MIN_POSITIVE)
+    fn bounds(&self) -> Option<LightBounds> {
+        Some(LightBounds {
+            bounds: Bounds { min: self.p, max: self.p },
+            axis: Vec3::Z,
+            cos_normals: -1.0,
+            cos_emission: 0.0,
+            intensity: self.intensity.luminance(),
+            two_sided: false,
+        })
+    }
+
+    fn importance(&self, at: &Receiver) -> f32 {
+        self.bounds().map_or(0.0, |bounds| bounds.importance(at))
     }
 
     fn power(&self, _scene: Bounds) -> f32 {

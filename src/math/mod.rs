@@ -11,7 +11,7 @@ mod scalar;
 
 pub use bounds::Bounds;
 pub use frame::Frame;
-pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;
 pub use scalar::{ONE_MINUS_EPSILON, gamma, safe_acos, safe_sqrt, sqr};

@@ -66,7 +66,7 @@ pub fn framing_camera(scene: &SceneDesc, aspect: f64) -> CameraDesc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::desc::{InstanceDesc, MeshDesc, Visibility};
+    use crate::desc::{InstanceDesc, LightLinks, MeshDesc, Visibility};
 
     #[test]
     fn every_corner_is_in_the_picture() {
@@ -84,6 +84,7 @@ mod tests {
             materials: vec![],
             object_index: 0,
             visibility: Visibility::ALL,
+            links: LightLinks::default(),
         };
         let scene = SceneDesc { meshes: vec![mesh], instances: vec![instance], ..SceneDesc::default() };
         for aspect in [0.3, 1.0, 3.0] {

@@ -1,5 +1,6 @@
 //! A mesh placed in render space.
 
+use crate::light::Rules;
 use crate::math::{Affine3A, Mat3A, Vec3, gamma};
 
 /// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
@@ -7,29 +8,44 @@ pub mod mask {
     use crate::desc::Visibility;
 
     /// Rays from the camera.
-    pub const CAMERA: u32 = 1;
+    pub const CAMERA: u64 = 1;
     /// Diffuse bounces.
-    pub const DIFFUSE: u32 = 2;
+    pub const DIFFUSE: u64 = 2;
     /// Reflections.
-    pub const GLOSSY: u32 = 4;
+    pub const GLOSSY: u64 = 4;
     /// Refractions.
-    pub const TRANSMISSION: u32 = 8;
+    pub const TRANSMISSION: u64 = 8;
     /// Shadow and occlusion rays, for objects that stop them whole.
-    pub const SHADOW: u32 = 16;
+    pub const SHADOW: u64 = 16;
     /// Shadow and occlusion rays, for objects whose opacity must be asked.
-    pub const SHADOW_CUTOUT: u32 = 32;
+    pub const SHADOW_CUTOUT: u64 = 32;
     /// Objects that emit.
-    pub const EMITTER: u32 = 64;
+    pub const EMITTER: u64 = 64;
 
-    /// The mask of an object.
-    pub fn of(visibility: Visibility, cutout: bool, emits: bool) -> u32 {
-        let bit = |on: bool, bit: u32| if on { bit } else { 0 };
+    /// Classes of blockers that shadow linking can tell apart: two bits for each.
+    pub const BLOCKER_CLASSES: u32 = 28;
+    const FIRST_BLOCKER: u32 = 8;
+
+    /// The mask of an object; `blocker` is its class where some light has shadow links.
+    pub fn of(visibility: Visibility, cutout: bool, emits: bool, blocker: Option<u32>) -> u64 {
+        let bit = |on: bool, bit: u64| if on { bit } else { 0 };
+        let linked = blocker.map_or(0, |class| if cutout { linked_cutout(1 << class) } else { linked(1 << class) });
         bit(visibility.camera, CAMERA)
             | bit(visibility.diffuse, DIFFUSE)
             | bit(visibility.glossy, GLOSSY)
             | bit(visibility.transmission, TRANSMISSION)
-            | bit(visibility.shadow, if cutout { SHADOW_CUTOUT } else { SHADOW })
+            | bit(visibility.shadow, if cutout { SHADOW_CUTOUT } else { SHADOW } | linked)
             | bit(emits, EMITTER)
+    }
+
+    /// Shadow rays that only the classes of blockers in `classes` stop whole.
+    pub fn linked(classes: u32) -> u64 {
+        u64::from(classes) << FIRST_BLOCKER
+    }
+
+    /// Shadow rays that only those classes stop, and whose opacity must be asked.
+    pub fn linked_cutout(classes: u32) -> u64 {
+        u64::from(classes) << (FIRST_BLOCKER + BLOCKER_CLASSES)
     }
 }
 
@@ -48,6 +64,10 @@ pub struct Instance {
     pub materials: Box<[u32]>,
     /// Index of the light that its emissive triangles form.
     pub light: Option<u32>,
+    /// Its class among the receivers that light linking tells apart.
+    pub receiver_class: u16,
+    /// Rules of the light that it emits; `None` where it emits none.
+    pub rules: Option<Box<Rules>>,
 }
 
 impl Instance {

@@ -39,7 +39,7 @@ pub struct Scene {
     pub effects: Effects,
     /// All lights.
     pub lights: LightSet,
-    /// True where the camera sees the background lights; else it sees black and alpha 0.
+    /// True where the camera sees a dome; else what lies behind everything has alpha 0.
     pub background_visible: bool,
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,

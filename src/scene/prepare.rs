@@ -1,8 +1,12 @@
 //! From what was authored to what is traced: the only place that sees both sides.
 
 mod camera;
+mod dome;
+mod emissive;
 mod geometry;
+mod lamp;
 mod lights;
+mod links;
 mod materials;
 
 use std::sync::Arc;
@@ -10,12 +14,13 @@ use std::time::{Duration, Instant};
 
 use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
-use crate::desc::{self, SceneDesc, WorldDesc};
+use crate::desc::{self, LightDesc, LightKind, SceneDesc, Visibility};
 use crate::error::{Result, Warnings};
 use crate::film::Quantity;
-use crate::light::LightSet;
-use crate::math::DVec3;
+use crate::light::{AnyEmitter, Light, LightSet};
+use crate::math::{DAffine3, DVec3};
 use crate::settings::Settings;
+use links::Links;
 
 /// What to make of a scene's cameras.
 #[derive(Clone, Debug, Default)]
@@ -53,24 +58,27 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
-    let mut geometry = geometry::prepare(&desc, origin, &materials, &mut warnings);
+    let links = Links::of(&desc, &mut warnings);
+    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, &mut warnings);
     let build_time = start.elapsed();
 
-    let default_world = default_world(&desc, &materials, &mut warnings);
-    let world = desc.world.as_ref().or(default_world.as_ref());
+    let default_dome = default_dome(&desc, &materials, &mut warnings);
     let lights = if effects.light || settings.passes.needs(Quantity::Environment) {
-        lights::prepare(&desc, world, origin, &mut geometry, &materials, &textures, &mut warnings)
+        let dome = default_dome.as_ref();
+        lights::prepare(&desc, dome, origin, &links, &[], &mut geometry, &materials, &textures, &mut warnings)
     } else {
         Vec::new()
     };
-    let lights = LightSet::new(lights, geometry.bvh.bounds());
+    let shows = |light: &Light| light.rules.seen.camera && matches!(light.emitter, AnyEmitter::Dome(_));
+    let background_visible = lights.iter().any(shows);
+    let lights = LightSet::new(lights, geometry.bvh.bounds(), links.receiver_classes());
     let scene = Scene {
         camera,
         size,
         origin,
         effects,
         lights,
-        background_visible: world.is_some_and(|world| world.visible),
+        background_visible,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         meshes: geometry.meshes,
@@ -93,8 +101,8 @@ fn render_space_origin(desc: &SceneDesc, camera: DVec3) -> DVec3 {
 }
 
 /// The dome of a scene that has no light at all.
-fn default_world(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<WorldDesc> {
-    let lit = desc.world.is_some() || !desc.lights.is_empty() || materials.iter().any(super::Material::emits);
+fn default_dome(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<LightDesc> {
+    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits);
     if lit {
         return None;
     }
@@ -103,5 +111,7 @@ fn default_world(desc: &SceneDesc, materials: &[super::Material], warnings: &mut
         "no light in the scene: lit by a constant white dome (radiance 1, not seen by the camera); \
          --environment FILE replaces it",
     );
-    Some(WorldDesc { place: desc.place.clone(), radiance: [1.0; 3], image: None, visible: false })
+    let kind = LightKind::Dome { radiance: [1.0; 3], image: None };
+    let light = LightDesc::new("default dome", desc.place.clone(), DAffine3::IDENTITY, kind);
+    Some(LightDesc { visibility: Visibility { camera: false, ..Visibility::ALL }, ..light })
 }

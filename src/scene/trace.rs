@@ -2,6 +2,7 @@
 
 use super::{Interaction, Scene, mask};
 use crate::bvh::Hit;
+use crate::light::{Emitter, Light, Shadow};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
 
 /// Surfaces that one ray may pass unscattered before it counts as stopped.
@@ -25,14 +26,19 @@ impl RayCone {
 
 impl Scene {
     /// The nearest surface along `ray` that `mask` sees.
-    pub fn closest_hit(&self, ray: &Ray, mask: u32) -> Option<Hit> {
+    pub fn closest_hit(&self, ray: &Ray, mask: u64) -> Option<Hit> {
         self.bvh.closest_hit(ray, mask)
     }
 
     /// Share of light that passes along `ray`: 0 behind an opaque surface, the product of
-    /// `1 − opacity` through cut-outs and blends.
-    pub fn transmittance(&self, ray: &Ray) -> f32 {
-        if self.bvh.any_hit(ray, mask::SHADOW) {
+    /// `1 − opacity` through cut-outs and blends; only what `shadow` names stops it.
+    pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> f32 {
+        let (opaque, cutout) = match shadow {
+            Shadow::Cast => (mask::SHADOW, mask::SHADOW_CUTOUT),
+            Shadow::Off => return 1.0,
+            Shadow::Only(classes) => (mask::linked(classes), mask::linked_cutout(classes)),
+        };
+        if self.bvh.any_hit(ray, opaque) {
             return 0.0;
         }
         if !self.effects.cutouts {
@@ -41,7 +47,7 @@ impl Scene {
         let mut left = 1.0;
         let mut ray = *ray;
         for _ in 0..MAX_TRANSPARENT {
-            let Some(hit) = self.closest_hit(&ray, mask::SHADOW_CUTOUT) else { return left };
+            let Some(hit) = self.closest_hit(&ray, cutout) else { return left };
             let it = self.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
             left *= 1.0 - self.opacity(&it);
             if left == 0.0 {
@@ -52,10 +58,12 @@ impl Scene {
         0.0
     }
 
-    /// Radiance of the background lights along the unit direction `d`, and for each its index.
-    pub fn background(&self, d: Vec3) -> impl Iterator<Item = (u32, Rgb)> {
-        use crate::light::Emitter;
-        self.lights.background().map(move |(i, light)| (i, light.le(d))).filter(|(_, le)| !le.is_black())
+    /// The background lights that shine along the unit direction `d`, with their index and radiance.
+    pub fn background(&self, d: Vec3) -> impl Iterator<Item = (u32, &Light, Rgb)> {
+        self.lights
+            .background()
+            .map(move |(i, light)| (i, light, light.emitter.le(d, None)))
+            .filter(|(.., le)| !le.is_black())
     }
 }
 

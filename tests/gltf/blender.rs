@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{Attribute, LightKind, SceneDesc};
+use penumbra::desc::{Attribute, ConeDesc, LightKind, SceneDesc};
 use penumbra::import::ImportOptions;
 use penumbra::math::{DVec3, Vec3};
 
@@ -46,13 +46,15 @@ fn bones_and_shape_keys_move_points_to_where_blender_has_them() {
 #[test]
 fn lamps_come_back_to_their_watts() {
     let scene = load(include_bytes!("../data/gltf/rig.glb"), None);
-    let kind = |name: &str| scene.lights.iter().find(|light| &*light.name == name).unwrap().kind;
+    let light = |name: &str| scene.lights.iter().find(|light| &*light.name == name).unwrap();
+    let kind = |name: &str| light(name).kind;
     let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
     let LightKind::Point { intensity, .. } = kind("Lamp") else { panic!() };
     close(intensity[0], 100.0 / (4.0 * PI));
     let LightKind::Distant { irradiance, .. } = kind("Sun") else { panic!() };
     close(irradiance[0], 3.0);
-    let LightKind::Spot { intensity, inner, outer, .. } = kind("Spot") else { panic!() };
+    let LightKind::Point { intensity } = kind("Spot") else { panic!() };
+    let Some(ConeDesc::Ramp { inner, outer }) = light("Spot").shaping.cone else { panic!() };
     close(intensity[0], 50.0 / (4.0 * PI));
     close(outer, 0.5);
     close(inner, 0.5 * 0.75);

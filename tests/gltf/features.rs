@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use penumbra::desc::{LightKind, ProjectionDesc};
+use penumbra::desc::{ConeDesc, LightKind, ProjectionDesc};
 use penumbra::import::{ImportOptions, LightUnits};
 use serde_json::json;
 
@@ -198,17 +198,18 @@ fn lights_of_each_kind_in_watts() {
     for light in 0..3 {
         glb.push("nodes", json!({"extensions": {"KHR_lights_punctual": {"light": light}}}));
     }
-    let kinds = |units| {
+    let lights = |units| {
         let options = ImportOptions { light_units: units, ..ImportOptions::default() };
-        load_with(&glb, &options).lights.iter().map(|light| light.kind).collect::<Vec<_>>()
+        load_with(&glb, &options).lights
     };
-    let kind = kinds(LightUnits::Spec);
-    assert_eq!(kind[0], LightKind::Point { intensity: [1.0, 0.5, 0.0], range: 4.0 });
+    let spec = lights(LightUnits::Spec);
+    assert_eq!((spec[0].kind, spec[0].decay.range), (LightKind::Point { intensity: [1.0, 0.5, 0.0] }, 4.0));
     let outer = std::f64::consts::FRAC_PI_4;
-    assert_eq!(kind[1], LightKind::Spot { intensity: [2.0; 3], inner: 0.3, outer, range: f64::INFINITY });
-    let LightKind::Distant { irradiance, angle } = kind[2] else { panic!() };
+    assert_eq!((spec[1].kind, spec[1].decay.range), (LightKind::Point { intensity: [2.0; 3] }, f64::INFINITY));
+    assert_eq!(spec[1].shaping.cone, Some(ConeDesc::Ramp { inner: 0.3, outer }));
+    let LightKind::Distant { irradiance, angle } = spec[2].kind else { panic!() };
     assert!((irradiance[0] - 0.1).abs() < 1e-15 && angle == 0.0);
-    let LightKind::Distant { irradiance, .. } = kinds(LightUnits::Raw)[2] else { panic!() };
+    let LightKind::Distant { irradiance, .. } = lights(LightUnits::Raw)[2].kind else { panic!() };
     assert_eq!(irradiance, [68.3; 3]);
 }
 
@@ -250,7 +251,7 @@ fn animation_of_nodes_lights_and_visibility_at_a_frame() {
     assert_eq!(middle.instances[0].transform.translation.to_array(), [12.0, 0.0, 0.0]);
     let x = middle.instances[0].transform.matrix3.x_axis;
     assert!((x.y.atan2(x.x) - FRAC_PI_2 / 2.0).abs() < 1e-7, "{x:?}");
-    assert_eq!(middle.lights[0].kind, LightKind::Point { intensity: [1.5; 3], range: f64::INFINITY });
+    assert_eq!(middle.lights[0].kind, LightKind::Point { intensity: [1.5; 3] });
     assert_eq!((middle.instances.len(), at(Some(99.0)).instances.len()), (2, 1));
     let slow = load_with(&glb, &ImportOptions { frame: Some(12.0), fps: 48.0, ..ImportOptions::default() });
     assert_eq!(slow.instances[0].transform.translation.x, 6.0);

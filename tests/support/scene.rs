@@ -1,8 +1,8 @@
 //! Small scenes by hand, and their pictures.
 
 use penumbra::desc::{
-    Attribute, CameraDesc, ColorInput, InstanceDesc, LightDesc, LightKind, MaterialDesc, MeshDesc, ProjectionDesc,
-    ScalarInput, SceneDesc, Visibility, WorldDesc,
+    Attribute, CameraDesc, ColorInput, InstanceDesc, LightDesc, LightKind, LightLinks, MaterialDesc, MeshDesc,
+    ProjectionDesc, ScalarInput, SceneDesc, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::film::{PassSet, Picture};
@@ -54,6 +54,7 @@ impl Builder {
             materials: vec![Some(material)],
             object_index: self.desc.instances.len() as u32 + 1,
             visibility: Visibility::ALL,
+            links: LightLinks::default(),
         });
     }
 
@@ -93,21 +94,13 @@ impl Builder {
 
     /// A lamp.
     pub fn light(&mut self, kind: LightKind, transform: DAffine3) {
-        self.desc.lights.push(LightDesc {
-            name: "lamp".into(),
-            place: Place::default(),
-            transform,
-            kind,
-            group: None,
-            visibility: Visibility::ALL,
-            cast_shadow: true,
-        });
+        let name = format!("lamp {}", self.desc.lights.len());
+        self.desc.lights.push(LightDesc::new(name.as_str(), Place::default(), transform, kind));
     }
 
     /// A dome of constant radiance.
     pub fn dome(&mut self, radiance: f64) {
-        let place = Place::default();
-        self.desc.world = Some(WorldDesc { place, radiance: [radiance; 3], image: None, visible: true });
+        self.light(LightKind::Dome { radiance: [radiance; 3], image: None }, DAffine3::IDENTITY);
     }
 
     /// An orthographic camera one metre from `target`, which looks along `forward` at a square of

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::super::LightUnits;
 use super::json::Light;
-use crate::desc::LightKind;
+use crate::desc::{ConeDesc, DecayDesc, LightKind, ShapingDesc};
 
 /// Lumens of a watt, by which physical glTF units and radiometric ones are exchanged.
 const LUMENS_PER_WATT: f64 = 683.0;
@@ -18,7 +18,11 @@ const LUMENS_PER_WATT: f64 = 683.0;
 /// What `light` emits, or why it can't. `extras` are those of its node: the extension has no size for
 /// the sun, which stands there as `angle`, the full angle in radians (Blender's exporter writes an
 /// object's custom properties so).
-pub(super) fn kind(light: &Light, extras: &Value, units: LightUnits) -> Result<LightKind, String> {
+pub(super) fn kind(
+    light: &Light,
+    extras: &Value,
+    units: LightUnits,
+) -> Result<(LightKind, ShapingDesc, DecayDesc), String> {
     let (radial, distant) = match units {
         LightUnits::Spec => (1.0 / LUMENS_PER_WATT, 1.0 / LUMENS_PER_WATT),
         LightUnits::Compat => (1.0, 1.0),
@@ -26,8 +30,10 @@ pub(super) fn kind(light: &Light, extras: &Value, units: LightUnits) -> Result<L
     };
     let scaled = |factor: f64| light.color.map(|c| (c * light.intensity * factor).max(0.0));
     let range = light.range.filter(|range| *range > 0.0).unwrap_or(f64::INFINITY);
+    let decay = DecayDesc { range, ..DecayDesc::default() };
+    let point = LightKind::Point { intensity: scaled(radial) };
     match light.kind.as_str() {
-        "point" => Ok(LightKind::Point { intensity: scaled(radial), range }),
+        "point" => Ok((point, ShapingDesc::default(), decay)),
         "spot" => {
             let outer = light.spot.outer_cone_angle;
             if outer.is_nan() || outer <= 0.0 {
@@ -35,11 +41,13 @@ pub(super) fn kind(light: &Light, extras: &Value, units: LightUnits) -> Result<L
             }
             let outer = outer.min(FRAC_PI_2);
             let inner = light.spot.inner_cone_angle.clamp(0.0, outer);
-            Ok(LightKind::Spot { intensity: scaled(radial), inner, outer, range })
+            let cone = Some(ConeDesc::Ramp { inner, outer });
+            Ok((point, ShapingDesc { cone, ..ShapingDesc::default() }, decay))
         }
         "directional" => {
             let angle = extras["angle"].as_f64().filter(|angle| (0.0..=PI).contains(angle)).unwrap_or(0.0);
-            Ok(LightKind::Distant { irradiance: scaled(distant), angle })
+            let kind = LightKind::Distant { irradiance: scaled(distant), angle };
+            Ok((kind, ShapingDesc::default(), DecayDesc::default()))
         }
         kind => Err(format!("light type '{kind}' is not known")),
     }
@@ -62,15 +70,12 @@ mod tests {
             (LightUnits::Compat, 7.957_747_154_6, 3.0),
             (LightUnits::Raw, 100.0, 3.0),
         ] {
-            let Ok(LightKind::Point { intensity, range }) = kind(&light("point", written), &Value::Null, units) else {
-                panic!()
-            };
+            let point = kind(&light("point", written), &Value::Null, units);
+            let Ok((LightKind::Point { intensity }, _, DecayDesc { range, .. })) = point else { panic!() };
             assert!((intensity[0] / expected - 1.0).abs() < 1e-9, "{units:?} {intensity:?}");
             assert!((intensity[1] / expected - 0.5).abs() < 1e-9 && intensity[2] == 0.0 && range.is_infinite());
-            let Ok(LightKind::Distant { irradiance, angle }) = kind(&light("directional", sun), &Value::Null, units)
-            else {
-                panic!()
-            };
+            let distant = kind(&light("directional", sun), &Value::Null, units);
+            let Ok((LightKind::Distant { irradiance, angle }, ..)) = distant else { panic!() };
             assert!((irradiance[0] - 3.0).abs() < 1e-12 && angle == 0.0, "{units:?}");
         }
     }
@@ -80,7 +85,8 @@ mod tests {
         let mut spot = light("spot", 1.0);
         spot.spot.inner_cone_angle = 2.0;
         spot.spot.outer_cone_angle = 3.0;
-        let Ok(LightKind::Spot { inner, outer, .. }) = kind(&spot, &Value::Null, LightUnits::Spec) else { panic!() };
+        let (_, shaping, _) = kind(&spot, &Value::Null, LightUnits::Spec).unwrap();
+        let Some(ConeDesc::Ramp { inner, outer }) = shaping.cone else { panic!() };
         assert_eq!((inner, outer), (FRAC_PI_2, FRAC_PI_2));
         spot.spot.outer_cone_angle = 0.0;
         assert!(kind(&spot, &Value::Null, LightUnits::Spec).is_err());
@@ -91,10 +97,8 @@ mod tests {
     fn the_suns_size_stands_in_the_extras() {
         for (extras, expected) in [(r#"{"angle": 0.5}"#, 0.5), (r#"{"angle": -1}"#, 0.0), ("[]", 0.0), ("null", 0.0)] {
             let extras: Value = serde_json::from_str(extras).unwrap();
-            let Ok(LightKind::Distant { angle, .. }) = kind(&light("directional", 1.0), &extras, LightUnits::Spec)
-            else {
-                panic!()
-            };
+            let distant = kind(&light("directional", 1.0), &extras, LightUnits::Spec);
+            let Ok((LightKind::Distant { angle, .. }, ..)) = distant else { panic!() };
             assert_eq!(angle, expected);
         }
     }

@@ -15,7 +15,7 @@ use super::mesh::{self, Job};
 use super::node::{self, Hierarchy, PlacedNode};
 use super::texture::{Lookup, TextureTable};
 use super::{camera, instancing, light, material};
-use crate::desc::{CameraDesc, InstanceDesc, LightDesc, MaterialDesc, MeshDesc, SceneDesc, Visibility};
+use crate::desc::{CameraDesc, InstanceDesc, LightDesc, LightLinks, MaterialDesc, MeshDesc, SceneDesc, Visibility};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::{DAffine3, DMat4, DVec3};
 
@@ -300,6 +300,7 @@ impl Builder<'_> {
                     materials: vec![part.material],
                     object_index: placed.node as u32 + 1,
                     visibility: Visibility::ALL,
+                    links: LightLinks::default(),
                 });
             }
         }
@@ -340,15 +341,10 @@ impl Builder<'_> {
         };
         let extras = &root.nodes[placed.node].extras;
         match light::kind(json, extras, self.options.light_units) {
-            Ok(kind) => scene.lights.push(LightDesc {
-                name: placed.name.clone(),
-                place: placed.place.clone(),
-                transform: placed.world,
-                kind,
-                group: None,
-                visibility: Visibility::ALL,
-                cast_shadow: true,
-            }),
+            Ok((kind, shaping, decay)) => {
+                let light = LightDesc::new(placed.name.clone(), placed.place.clone(), placed.world, kind);
+                scene.lights.push(LightDesc { shaping, decay, ..light });
+            }
             Err(what) => warnings.push(&placed.place, format!("{what}; the light is left out")),
         }
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
 use crate::desc::{self, InstanceDesc, MeshDesc, SceneDesc};
 use crate::error::Warnings;
@@ -24,7 +25,13 @@ pub struct Geometry {
 }
 
 /// Prepares all meshes that are placed, in parallel.
-pub fn prepare(desc: &SceneDesc, origin: DVec3, materials: &[Material], warnings: &mut Warnings) -> Geometry {
+pub fn prepare(
+    desc: &SceneDesc,
+    origin: DVec3,
+    materials: &[Material],
+    links: &Links,
+    warnings: &mut Warnings,
+) -> Geometry {
     let mut used = vec![false; desc.meshes.len()];
     for instance in &desc.instances {
         used[instance.mesh as usize] = true;
@@ -46,16 +53,17 @@ pub fn prepare(desc: &SceneDesc, origin: DVec3, materials: &[Material], warnings
         if mesh.triangles.is_empty() {
             continue;
         }
-        let Some(prepared) = place(instance, mesh, origin, default_material) else {
+        let Some(mut prepared) = place(instance, mesh, origin, default_material) else {
             warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
             continue;
         };
         let cutout = prepared.materials.iter().any(|&m| materials[m as usize].is_cutout());
         let emits = prepared.materials.iter().any(|&m| materials[m as usize].emits());
+        prepared.receiver_class = links.receiver_class(i);
         boxes.push(bvh::Instance {
             blas: instance.mesh,
             object_to_render: prepared.object_to_render,
-            mask: mask::of(instance.visibility, cutout, emits),
+            mask: mask::of(instance.visibility, cutout, emits, links.blocker_class(i)),
         });
         instances.push(prepared);
         placed.push(i as u32);
@@ -116,5 +124,7 @@ fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32)
         mirrored: to_render.matrix3.determinant() < 0.0,
         materials,
         light: None,
+        receiver_class: 0,
+        rules: None,
     })
 }

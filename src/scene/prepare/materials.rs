@@ -40,8 +40,11 @@ fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) 
     for texture in materials.flat_map(MaterialDesc::textures) {
         wanted[desc.textures[texture.texture as usize].image as usize] = true;
     }
-    // The world's texels are still needed.
-    let world = desc.world.as_ref().and_then(|world| world.image).map(|image| image.image as usize);
+    // Texels that light are still needed.
+    let mut lights = vec![false; desc.images.len()];
+    for image in desc.lights.iter().filter_map(|light| light.kind.image()) {
+        lights[image as usize] = true;
+    }
     let prepared: Vec<(Option<Image>, Warnings)> = desc
         .images
         .par_iter_mut()
@@ -52,7 +55,7 @@ fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) 
                 return (None, warnings);
             }
             let (name, place) = (image.name.clone(), image.place.clone());
-            let pixels = if world == Some(i) {
+            let pixels = if lights[i] {
                 image.pixels.clone()
             } else {
                 std::mem::replace(&mut image.pixels, PixelData::U8(Vec::new()))
