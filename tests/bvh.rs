@@ -150,7 +150,7 @@ fn exact(corners: [Vec3; 3], ray: &Ray) -> Option<Exact> {
 
 /// Compares with the brute-force answer wherever rounding cannot have decided.
 fn check_against_brute_force(mesh: &Mesh, bvhs: &[Bvh], ray: &Ray) -> bool {
-    let hit = shoot(bvhs, ray, u32::MAX);
+    let hit = shoot(bvhs, ray, u64::MAX);
     let margin = 1e-3;
     let mut nearest = f64::INFINITY;
     for i in 0..mesh.triangles.len() {
@@ -228,13 +228,13 @@ fn nothing_escapes_from_a_closed_mesh() {
                 let o = if k == 0 { shift } else { inside(&mut rng) };
                 let nudged = Vec3::new(step(&mut rng, target.x), step(&mut rng, target.y), step(&mut rng, target.z));
                 for p in [target, nudged] {
-                    assert!(shoot(&bvhs, &Ray::new(o, p - o), u32::MAX).is_some(), "target {i} of sphere {n} escaped");
+                    assert!(shoot(&bvhs, &Ray::new(o, p - o), u64::MAX).is_some(), "target {i} of sphere {n} escaped");
                 }
             }
         }
         for _ in 0..20_000 {
             let ray = Ray::new(inside(&mut rng), rng.dir() * squash);
-            assert!(shoot(&bvhs, &ray, u32::MAX).is_some(), "escaped from sphere {n}: {ray:?}");
+            assert!(shoot(&bvhs, &ray, u64::MAX).is_some(), "escaped from sphere {n}: {ray:?}");
         }
     }
 }
@@ -331,7 +331,7 @@ fn nothing_to_hit() {
     for mesh in [Mesh::default(), nan, point] {
         assert!(mesh.blas().is_empty() && mesh.blas().bounds().is_empty());
         for bvhs in [single(&mesh), placed(&[mesh.blas()], &[]), placed(&[], &[])] {
-            assert_eq!(shoot(&bvhs, &Ray::new(Vec3::ZERO, Vec3::ONE), u32::MAX), None);
+            assert_eq!(shoot(&bvhs, &Ray::new(Vec3::ZERO, Vec3::ONE), u64::MAX), None);
             assert!(bvhs[0].bounds().is_empty());
         }
     }
