@@ -17,6 +17,6 @@ pub use filter::{FILTERS, Filter, FilterRow};
 pub use pass::{PASSES, Pass, PassSet, Storage};
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};
-pub use sample::{CryptoSample, FirstHit, PixelSample, Split};
+pub use sample::{CryptoSample, FirstHit, GroupSample, PixelSample, Split};
 pub use store::Film;
 pub use tile::{NonFinite, SampleId, Tile};

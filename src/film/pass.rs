@@ -242,6 +242,11 @@ impl PassSet {
         PASSES.iter().zip(&self.chosen).filter_map(|(pass, &chosen)| chosen.then_some(pass))
     }
 
+    /// Names of the light groups whose sums are kept, in the order of their indices.
+    pub fn groups(&self) -> &[std::sync::Arc<str>] {
+        &[]
+    }
+
     /// What the film accumulates.
     pub fn quantities(&self) -> Quantities {
         self.quantities

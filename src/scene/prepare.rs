@@ -76,6 +76,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         camera,
         size,
         origin,
+        passes: settings.passes.clone(),
         effects,
         lights,
         background_visible,
