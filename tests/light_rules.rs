@@ -54,7 +54,8 @@ fn lit(kind: Kind, roughness: f64, links: LightLinks, visibility: Visibility) ->
     match kind {
         Kind::Lamp(kind) => {
             // Shines straight down.
-            let transform = DAffine3::from_translation(DVec3::new(0.3, 2.0, 0.0)) * DAffine3::from_rotation_x(-0.5 * PI);
+            let transform =
+                DAffine3::from_translation(DVec3::new(0.3, 2.0, 0.0)) * DAffine3::from_rotation_x(-0.5 * PI);
             builder.light(kind, transform);
             let light = builder.desc.lights.last_mut().unwrap();
             (light.links, light.visibility) = (links, visibility);
