@@ -4,6 +4,7 @@
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
 mod bounds;
+mod choice;
 mod distant;
 mod dome;
 mod light;
@@ -11,15 +12,18 @@ mod mesh;
 mod point;
 mod profile;
 mod select;
+mod tree;
 
 pub use bounds::LightBounds;
+pub use choice::{Choice, Strategy};
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
 pub use light::{Light, Rules, Seen, Shadow};
 pub use mesh::{Emission, EmissiveTriangle, MeshLight};
 pub use point::Point;
 pub use profile::Profile;
-pub use select::{Choice, LightSet};
+pub use select::LightSet;
+pub use tree::{ChosenItem, LightTree};
 
 use crate::math::{Bounds, Rgb, Vec3};
 

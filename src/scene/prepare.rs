@@ -19,9 +19,9 @@ use super::{Effects, Ids, Scene};
 use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
 use crate::film::Quantity;
-use crate::light::{AnyEmitter, Light, LightSet};
+use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
-use crate::settings::Settings;
+use crate::settings::{LightSelection, Settings};
 use links::Links;
 
 /// What to make of a scene's cameras.
@@ -75,7 +75,12 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     };
     let shows = |light: &Light| light.rules.seen.camera && matches!(light.emitter, AnyEmitter::Dome(_));
     let background_visible = lights.iter().any(shows);
-    let lights = LightSet::new(lights, geometry.bvh.bounds(), links.receiver_classes());
+    let by = match settings.light_selection {
+        LightSelection::Tree => Strategy::Tree,
+        LightSelection::Power => Strategy::Power,
+        LightSelection::Uniform => Strategy::Uniform,
+    };
+    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
     let scene = Scene {
         camera,
         size,
