@@ -32,10 +32,8 @@ pub use ies::Ies;
 pub use light::{Light, Rules, Seen, Shadow};
 pub use mesh::{Emission, EmissiveTriangle, MeshLight};
 pub use point::Point;
-pub use profile::Profile;
 pub use profile::{Profile, Shaping};
 pub use select::LightSet;
-pub use select::{Choice, LightSet};
 pub use sphere::Sphere;
 pub use tree::{ChosenItem, LightTree};
 
