@@ -19,7 +19,7 @@ pub use choice::{Choice, Strategy};
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, EmissiveTriangle, MeshLight};
+pub use mesh::{Emission, MeshEmitters, MeshLight};
 pub use point::Point;
 pub use profile::Profile;
 pub use select::LightSet;
