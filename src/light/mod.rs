@@ -30,7 +30,7 @@ pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
 pub use ies::Ies;
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, EmissiveTriangle, MeshLight};
+pub use mesh::{Emission, MeshEmitters, MeshLight};
 pub use point::Point;
 pub use profile::{Profile, Shaping};
 pub use select::LightSet;
