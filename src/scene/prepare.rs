@@ -8,6 +8,8 @@ mod lamp;
 mod lights;
 mod links;
 mod materials;
+mod mend;
+mod shaping;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
