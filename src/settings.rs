@@ -19,6 +19,17 @@ pub enum Integrator {
     Ao,
 }
 
+/// How one of many lights is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSelection {
+    /// By what it may send to the point that is lit.
+    Tree,
+    /// By its power.
+    Power,
+    /// All alike.
+    Uniform,
+}
+
 /// Which effects are simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EffectsMode {
@@ -166,6 +177,8 @@ macro_rules! choice {
 }
 
 choice!(Integrator, INTEGRATORS, "path" => Integrator::Path, "direct" => Integrator::Direct, "ao" => Integrator::Ao);
+choice!(LightSelection, LIGHT_SELECTIONS,
+    "tree" => LightSelection::Tree, "power" => LightSelection::Power, "uniform" => LightSelection::Uniform);
 choice!(EffectsMode, EFFECTS, "auto" => EffectsMode::Auto, "all" => EffectsMode::All);
 
 impl Value for Pattern {
@@ -240,6 +253,12 @@ settings! {
         "Scatterings after the first hit; 0 for direct light only";
     ao_distance: Option<f64> = "", Kind::Float { min: 0.0, max: f64::MAX }, "D",
         "Occluders farther than this many metres do not count in the ao pass; unlimited unless set";
+    ao_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
+        "Ambient occlusion rays per sample";
+    light_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
+        "Light samples at the first hit per sample";
+    light_selection: LightSelection = "tree", Kind::Choice(LIGHT_SELECTIONS), "NAME",
+        "How one of many lights is chosen: tree (by what it may send to a point), or, with more noise, power or uniform";
     sampler: Pattern = "sobol", Kind::Text, "NAME",
         "Point set that the random decisions are drawn from";
     filter: Filter = "blackman_harris:1.5", Kind::Text, "NAME[:WIDTH]",
