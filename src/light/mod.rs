@@ -3,36 +3,28 @@
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
-mod azimuth;
 mod bounds;
 mod choice;
-mod cone;
 mod cylinder;
-mod decay;
 mod distant;
 mod dome;
-mod ies;
 mod light;
 mod mesh;
 mod point;
 mod profile;
-mod quadrature;
 mod select;
 mod sphere;
 mod tree;
 
 pub use bounds::LightBounds;
 pub use choice::{Choice, Strategy};
-pub use cone::Cone;
 pub use cylinder::Cylinder;
-pub use decay::{Decay, Falloff};
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
-pub use ies::Ies;
 pub use light::{Light, Rules, Seen, Shadow};
 pub use mesh::{Emission, MeshEmitters, MeshLight};
 pub use point::Point;
-pub use profile::{Profile, Shaping};
+pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
 pub use select::LightSet;
 pub use sphere::Sphere;
 pub use tree::{ChosenItem, LightTree};
