@@ -6,7 +6,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, Receiver};
 use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
 use crate::sampling::{AliasTable, warp};
 
@@ -21,12 +21,6 @@ pub struct EmissiveTriangle {
     pub p_err: Vec3,
     /// Index of the triangle in its mesh.
     pub index: u32,
-}
-
-/// How radiance varies over a mesh light: asked at a triangle of the mesh and its barycentrics.
-pub trait Emission: Send + Sync + std::fmt::Debug {
-    /// Emitted radiance at `(1 − u − v) p0 + u p1 + v p2` of `triangle`.
-    fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
 }
 
 /// All emissive triangles of an instance, emitting on both sides.

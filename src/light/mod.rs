@@ -3,22 +3,28 @@
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
+mod aim;
 mod azimuth;
 mod bounds;
 mod choice;
 mod cone;
 mod cylinder;
 mod decay;
+mod disk;
 mod distant;
 mod dome;
+mod emission;
+mod flat;
 mod ies;
 mod light;
 mod mesh;
 mod point;
 mod profile;
 mod quadrature;
+mod rect;
 mod select;
 mod sphere;
+mod spread;
 mod tree;
 
 pub use bounds::LightBounds;
@@ -26,15 +32,20 @@ pub use choice::{Choice, Strategy};
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use decay::{Decay, Falloff};
+pub use disk::Disk;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
+pub use emission::Emission;
+pub use flat::Flat;
 pub use ies::Ies;
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, EmissiveTriangle, MeshLight};
+pub use mesh::{EmissiveTriangle, MeshLight};
 pub use point::Point;
 pub use profile::{Profile, Shaping};
+pub use rect::Rect;
 pub use select::LightSet;
 pub use sphere::Sphere;
+pub use spread::Spread;
 pub use tree::{ChosenItem, LightTree};
 
 use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
@@ -172,7 +183,7 @@ macro_rules! emitters {
 
 emitters!(
     Point, // a delta
-    Sphere, Cylinder, // lamps
+    Sphere, Cylinder, Rect, Disk, // lamps
     Distant, Dome, MeshLight,
 );
 
