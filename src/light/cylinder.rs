@@ -7,11 +7,14 @@
 //! `W = sin ψ₁ − sin ψ₀`. Every direction that sees the tube is chosen, no other, and where `W` does not
 //! vary, as far from the tube or close to its middle, the density is constant.
 
+mod azimuth;
+
 use std::f32::consts::PI;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
-use super::azimuth::Azimuth;
+use azimuth::Azimuth;
+
 use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
 use crate::math::{Bounds, DVec3, Rgb, Vec3};
 

@@ -4,23 +4,18 @@
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
 mod aim;
-mod azimuth;
 mod bounds;
 mod choice;
-mod cone;
 mod cylinder;
-mod decay;
 mod disk;
 mod distant;
 mod dome;
 mod emission;
 mod flat;
-mod ies;
 mod light;
 mod mesh;
 mod point;
 mod profile;
-mod quadrature;
 mod rect;
 mod select;
 mod sphere;
@@ -29,19 +24,16 @@ mod tree;
 
 pub use bounds::LightBounds;
 pub use choice::{Choice, Strategy};
-pub use cone::Cone;
 pub use cylinder::Cylinder;
-pub use decay::{Decay, Falloff};
 pub use disk::Disk;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
 pub use emission::Emission;
 pub use flat::Flat;
-pub use ies::Ies;
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{EmissiveTriangle, MeshLight};
+pub use mesh::{MeshEmitters, MeshLight};
 pub use point::Point;
-pub use profile::{Profile, Shaping};
+pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
 pub use rect::Rect;
 pub use select::LightSet;
 pub use sphere::Sphere;

@@ -1,11 +1,21 @@
 //! How the emission of a local light varies with direction and distance: cone, focus, measured
 //! distribution, decay.
 
+mod cone;
+mod decay;
+mod ies;
+mod quadrature;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::cone::{OffAxis, keeps_angles, stretched_half};
-use super::{Cone, Decay, Ies, LightBounds, Receiver, quadrature};
+use cone::{OffAxis, keeps_angles, stretched_half};
+
+use super::{LightBounds, Receiver};
 use crate::math::{DMat3, DVec3, Rgb, Vec3};
+
+pub use cone::Cone;
+pub use decay::{Decay, Falloff};
+pub use ies::Ies;
 
 /// Cosine of the angle by which the light tree may be off at the rim of a cone: sines that come from
 /// the cosines of small angles in `f32` are that far from the truth.
@@ -159,7 +169,7 @@ impl Profile {
     /// The bounds of a light that has this profile, given those that it has without.
     pub fn bound(&self, of: LightBounds) -> LightBounds {
         let cos_half = (self.half + 1e-6).min(PI).cos() as f32;
-        let mut bounds = LightBounds { intensity: of.intensity * self.peak.max_component(), ..of };
+        let mut bounds = LightBounds { intensity: (of.intensity * self.peak.max_component()).min(f32::MAX), ..of };
         if of.cos_normals <= -1.0 && self.half < PI {
             // What shines everywhere alike shines into the cone alike.
             (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, cos_half, RIM);

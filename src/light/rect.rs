@@ -29,9 +29,10 @@ impl Rect {
         Self { flat, half, texture: None }
     }
 
-    /// With radiance that varies; that of the light is the mean.
+    /// With radiance that varies, instead of that of `flat`.
     pub fn textured(self, texture: Arc<dyn Emission>) -> Self {
-        Self { texture: Some(texture), ..self }
+        let flat = Flat { radiance: texture.mean(0), ..self.flat };
+        Self { flat, texture: Some(texture), ..self }
     }
 
     fn aim(&self, view: &View) -> Option<Aim> {

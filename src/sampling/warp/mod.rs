@@ -8,6 +8,7 @@ mod disk;
 mod elliptic_cone;
 mod hemisphere;
 mod spherical_rect;
+mod spherical_triangle;
 mod triangle;
 
 pub use cone::{one_minus_cos, pdf_cone, sample_cone};
@@ -18,4 +19,5 @@ pub use hemisphere::{
     sample_uniform_hemisphere, sample_uniform_sphere,
 };
 pub use spherical_rect::SphericalRect;
+pub use spherical_triangle::{SphericalTriangle, solid_angle_of_triangle};
 pub use triangle::sample_triangle;

@@ -15,12 +15,17 @@ use crate::texture::{Image, Texture};
 struct Picture {
     texture: Texture,
     factor: Rgb,
+    mean: Rgb,
 }
 
 impl Emission for Picture {
     fn radiance(&self, _triangle: u32, uv: [f32; 2]) -> Rgb {
         let [r, g, b, _] = self.texture.lookup(uv, 0.0);
         self.factor * Rgb::new(r, g, b).map(|v| v.max(0.0))
+    }
+
+    fn mean(&self, _triangle: u32) -> Rgb {
+        self.mean
     }
 }
 
@@ -43,13 +48,11 @@ pub fn prepare(
     let flat = Flat { spread: cone(spread, mended), two_sided, ..flat };
     let LightKind::Rect { image, .. } = light.kind else { return Some(Disk::new(flat, [x, y]).into()) };
     let Some(image) = image else { return Some(Rect::new(flat, [x, y]).into()) };
-    let factor = flat.radiance;
-    let (mean, texture) = picture(&desc.images[image as usize], factor, mended, warnings)?;
-    let rect = Rect::new(Flat { radiance: mean, ..flat }, [x, y]);
-    Some(AnyEmitter::from(match texture {
-        Some(texture) => rect.textured(Arc::new(texture)),
-        None => rect,
-    }))
+    let picture = picture(&desc.images[image as usize], flat.radiance, mended, warnings)?;
+    // The same all over: no need to ask.
+    let constant = picture.texture.constant().is_some();
+    let rect = Rect::new(Flat { radiance: picture.mean, ..flat }, [x, y]);
+    Some(if constant { rect.into() } else { rect.textured(Arc::new(picture)).into() })
 }
 
 fn half_size(what: &str, size: f64, mended: &mut Mended) -> Option<f64> {
@@ -64,18 +67,14 @@ fn cone(angle: f64, mended: &mut Mended) -> Spread {
     Spread::new(mended.clamped("spread", angle, [0.0, PI]))
 }
 
-/// Mean radiance and, unless it is the same all over, the radiance at each point; `None` for black.
-fn picture(
-    image: &ImageDesc,
-    factor: Rgb,
-    mended: &mut Mended,
-    warnings: &mut Warnings,
-) -> Option<(Rgb, Option<Picture>)> {
+/// Radiance of `image` times `factor`; `None` for black.
+fn picture(image: &ImageDesc, factor: Rgb, mended: &mut Mended, warnings: &mut Warnings) -> Option<Picture> {
+    let name = &image.name;
     let made = match Image::new(image.clone(), warnings) {
         Ok(made) => Arc::new(made),
         Err(error) => {
-            mended.note(format!("{error}: taken as white"));
-            return Some((factor, None));
+            mended.note(format!("its image \"{name}\" can't be used ({error})"));
+            return None;
         }
     };
     let desc = TextureDesc {
@@ -85,14 +84,12 @@ fn picture(
         wrap_v: Wrap::Clamp,
         filter: Filter::Linear,
     };
-    let mean = mean(&made, mended);
+    let mean = factor * mean(&made, mended);
     if mean.is_black() {
-        mended.note(format!("its image \"{}\" is black", image.name));
+        mended.note(format!("its image \"{name}\" is black"));
         return None;
     }
-    let constant = made.constant().is_some();
-    let texture = Texture::new(made, &desc);
-    Some((factor * mean, (!constant).then_some(Picture { texture, factor })))
+    Some(Picture { texture: Texture::new(made, &desc), factor, mean })
 }
 
 /// Mean of what bilinear lookups give, which is that of the texels.
