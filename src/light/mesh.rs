@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::bounds::Asked;
 use super::tree::refined;
-use super::{Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
 use crate::math::{Affine3A, Bounds, DVec3, Mat3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
 use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
 use crate::shape::Mesh;
@@ -25,15 +25,6 @@ const SOLID_ANGLES: std::ops::Range<f64> = 1e-9..TAU * (1.0 - 1e-9);
 
 /// Numbers the choice of a triangle among those that draw on one random number.
 const TRIANGLE: u32 = 1;
-
-/// How a mesh emits.
-pub trait Emission: Send + Sync + std::fmt::Debug {
-    /// Emitted radiance at `(1 − u − v) p0 + u p1 + v p2` of `triangle`.
-    fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
-
-    /// Mean radiance of `triangle`, by which it is chosen: 0 only where it is dark all over.
-    fn mean(&self, triangle: u32) -> Rgb;
-}
 
 /// All emissive triangles of a mesh, emitting on both sides.
 #[derive(Debug)]
