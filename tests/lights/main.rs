@@ -5,3 +5,5 @@
 #[path = "../support/chi2.rs"]
 mod chi2;
 mod laws;
+mod plane;
+mod rect;
