@@ -4,6 +4,7 @@
 
 #[path = "../support/chi2.rs"]
 mod chi2;
+mod disk;
 mod laws;
 mod plane;
 mod rect;

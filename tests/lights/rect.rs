@@ -42,11 +42,11 @@ fn near_and_tilted() {
         case("partly below the horizon", &above(0.5), square, Vec3::ZERO, Vec3::new(0.96, -0.28, 0.0)),
         case("turned", &turned(), [0.6, 0.2], Vec3::ZERO, Vec3::Y),
         case("turned, tilted", &turned(), [0.6, 0.2], Vec3::new(0.1, -0.2, 0.3), TILTED),
-        case("beside", &above(0.3), [0.25, 0.5], Vec3::new(1.5, 0.0, 0.9), Vec3::Y),
+        case("beside", &above(0.6), [0.25, 0.5], Vec3::new(1.2, 0.0, 0.9), Vec3::Y),
         case("at 0.1", &above(0.1), square, Vec3::ZERO, Vec3::Y),
         case("ten away", &above(10.0), square, Vec3::ZERO, Vec3::Y),
         case("hundred away", &above(100.0), square, Vec3::ZERO, TILTED),
-        case("in a corner of the room", &above(1e-2), square, Vec3::new(0.6, 0.0, 0.5), Vec3::Y),
+        case("under a corner", &above(0.05), square, Vec3::new(0.6, 0.0, 0.5), Vec3::Y),
     ]);
 }
 
