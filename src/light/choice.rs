@@ -142,7 +142,7 @@ impl Weighed {
         let root = self.tree.as_ref().map(|tree| (tree, tree.weigh(&asked)));
         let far = root.as_ref().map_or(0.0, |(_, weights)| f64::from(weights.sum));
         let total = scan.total + far;
-        if !(total > 0.0) {
+        if total <= 0.0 {
             return None;
         }
         let fine = if root.is_some() { refined(u, &asked, 0) } else { f64::from(u) };

@@ -22,7 +22,7 @@ pub use cylinder::Cylinder;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, EmissiveTriangle, MeshLight};
+pub use mesh::{Emission, MeshEmitters, MeshLight};
 pub use point::Point;
 pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
 pub use select::LightSet;

@@ -12,7 +12,7 @@ mod node;
 
 use super::bounds::Asked;
 use super::{LightBounds, Receiver};
-use crate::math::{ONE_MINUS_EPSILON, Vec3};
+use crate::math::{Bounds, ONE_MINUS_EPSILON, Vec3};
 use node::{Child, Node};
 
 pub(super) use node::{LARGEST, Weights};
@@ -66,6 +66,11 @@ impl LightTree {
     /// Bounds of everything.
     pub fn bounds(&self) -> &LightBounds {
         &self.bounds
+    }
+
+    /// A few boxes that hold everything.
+    pub(super) fn boxes(&self) -> impl Iterator<Item = Bounds> {
+        self.nodes[0].boxes()
     }
 
     /// Unoccluded irradiance of all items at `at`, roughly; 0 only where none can arrive.

@@ -1,3 +1,7 @@
 //! Laws that every emitter obeys, and irradiance against closed forms.
 //!
 //! Each light has a file with its cases; [`laws`] says what must hold for all of them.
+
+#[path = "../support/chi2.rs"]
+mod chi2;
+mod laws;

@@ -154,8 +154,7 @@ fn best_plane(items: &[Item], part: &Part, side: Vec3) -> Option<(usize, usize)>
     let (extent, spread) = (part.cluster.bounds.extent(), part.cluster.centers.extent());
     let mut best: Option<(f64, usize, usize)> = None;
     for (axis, bins) in bins.iter().enumerate() {
-        // Not `<= 0`, which is false for the spread of NaN.
-        if !(spread[axis] > 0.0) {
+        if spread[axis] <= 0.0 {
             continue;
         }
         // Long boxes are split across: K_r of the paper.

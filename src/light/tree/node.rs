@@ -2,7 +2,7 @@
 
 use crate::light::LightBounds;
 use crate::light::bounds::{Asked, Lobe};
-use crate::math::Vec3;
+use crate::math::{Bounds, Vec3};
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
@@ -82,6 +82,15 @@ impl Node {
             i if i & LEAF != 0 => Child::Light(i & !LEAF),
             i => Child::Node(i),
         }
+    }
+
+    /// Boxes of the children.
+    pub fn boxes(&self) -> impl Iterator<Item = Bounds> {
+        let vector = |v: &[[f32; WIDTH]; 3], i: usize| Vec3::new(v[0][i], v[1][i], v[2][i]);
+        (0..WIDTH).filter(|&i| self.child[i] != u32::MAX).map(move |i| {
+            let (center, half) = (vector(&self.center, i), vector(&self.half, i));
+            Bounds { min: center - half, max: center + half }
+        })
     }
 
     /// Moves the indices of inner children, after nodes have moved.

@@ -6,6 +6,7 @@
 mod cone;
 mod disk;
 mod hemisphere;
+mod spherical_triangle;
 mod triangle;
 
 pub use cone::{one_minus_cos, pdf_cone, sample_cone};
@@ -14,4 +15,5 @@ pub use hemisphere::{
     PDF_UNIFORM_HEMISPHERE, PDF_UNIFORM_SPHERE, pdf_cosine_hemisphere, sample_cosine_hemisphere,
     sample_uniform_hemisphere, sample_uniform_sphere,
 };
+pub use spherical_triangle::{SphericalTriangle, solid_angle_of_triangle};
 pub use triangle::sample_triangle;
