@@ -4,4 +4,9 @@
 
 #[path = "../support/chi2.rs"]
 mod chi2;
+mod cylinder;
 mod laws;
+mod point;
+mod profile;
+mod quadrature;
+mod sphere;
