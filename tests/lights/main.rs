@@ -4,7 +4,12 @@
 
 #[path = "../support/chi2.rs"]
 mod chi2;
+mod cylinder;
 mod disk;
 mod laws;
 mod plane;
+mod point;
+mod profile;
+mod quadrature;
 mod rect;
+mod sphere;
