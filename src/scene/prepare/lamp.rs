@@ -1,10 +1,10 @@
 //! One authored light as an emitter in render space; what can't be so is replaced, with a warning.
 
 use super::mend::Mended;
-use super::{dome, shaping};
+use super::{dome, flat, shaping};
 use crate::desc::{LightDesc, LightKind, SceneDesc};
 use crate::error::Warnings;
-use crate::light::{AnyEmitter, Cylinder, Distant, Point, Sphere};
+use crate::light::{AnyEmitter, Cylinder, Distant, Flat, Point, Sphere};
 use crate::math::{DMat3, DVec3, Mat3, Vec3};
 
 /// The emitter of `light`; `None` where it emits nothing. All substitutes are told in one warning.
@@ -41,9 +41,9 @@ fn emitter(
             let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
             dome::prepare(desc, light, color, image, orientation, warnings)?.into()
         }
-        _ => {
-            mended.note("a light of this shape is not there yet");
-            return None;
+        LightKind::Rect { .. } | LightKind::Disk { .. } => {
+            let flat = Flat { profile, ..Flat::new(light.transform.translation - origin, axes, color) };
+            flat::prepare(desc, light, flat, mended, warnings)?
         }
     })
 }
