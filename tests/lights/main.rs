@@ -4,4 +4,7 @@
 
 #[path = "../support/chi2.rs"]
 mod chi2;
+mod distant;
+mod dome;
 mod laws;
+mod sun;
