@@ -13,3 +13,7 @@ mod profile;
 mod quadrature;
 mod rect;
 mod sphere;
+mod distant;
+mod dome;
+mod laws;
+mod sun;
