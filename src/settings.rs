@@ -253,6 +253,10 @@ settings! {
         "Scatterings after the first hit; 0 for direct light only";
     ao_distance: Option<f64> = "", Kind::Float { min: 0.0, max: f64::MAX }, "D",
         "Occluders farther than this many metres do not count in the ao pass; unlimited unless set";
+    ao_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
+        "Ambient occlusion rays per sample";
+    light_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
+        "Light samples at the first hit per sample";
     light_selection: LightSelection = "tree", Kind::Choice(LIGHT_SELECTIONS), "NAME",
         "How one of many lights is chosen: tree (by what it may send to a point), or, with more noise, power or uniform";
     sampler: Pattern = "sobol", Kind::Text, "NAME",

@@ -37,6 +37,11 @@ impl<'a> View<'a> {
         self.bsdf.glass.is_some()
     }
 
+    /// True where some channel is not scattered beneath the surface.
+    pub fn lacks_diffuse(&self) -> bool {
+        self.diffuse.r == 0.0 || self.diffuse.g == 0.0 || self.diffuse.b == 0.0
+    }
+
     pub(super) fn new(bsdf: &'a Bsdf, wo: Vec3) -> Self {
         let side = if wo.z < 0.0 { -1.0 } else { 1.0 };
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());

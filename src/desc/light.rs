@@ -254,6 +254,20 @@ impl LightDesc {
 }
 
 impl LightKind {
+    /// True for a light with a shape of its own, near or far.
+    pub fn is_shape(&self) -> bool {
+        matches!(self, Self::Sphere { .. } | Self::Rect { .. } | Self::Disk { .. } | Self::Cylinder { .. })
+    }
+
+    /// True for a light that shines out of the background: a dome, or a sun with a size.
+    pub fn is_in_background(&self) -> bool {
+        match *self {
+            Self::Distant { angle, .. } => angle > 0.0,
+            Self::Dome { .. } => true,
+            _ => false,
+        }
+    }
+
     /// The image that it is textured with.
     pub fn image(&self) -> Option<u32> {
         match *self {

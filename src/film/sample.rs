@@ -35,9 +35,25 @@ pub struct CryptoSample {
     pub coverage: f32,
 }
 
+/// Light of one light group in a sample; each is the part of the field of that name, or of
+/// `direct.diffuse`, that the group's lights brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GroupSample {
+    /// Part of `combined`.
+    pub combined: Rgb,
+    /// Part of `direct.diffuse`.
+    pub lit: Rgb,
+    /// Part of `unshadowed`.
+    pub unshadowed: Rgb,
+    /// Part of `irradiance_shadowed`.
+    pub irradiance_shadowed: Rgb,
+    /// Part of `irradiance_unshadowed`.
+    pub irradiance_unshadowed: Rgb,
+}
+
 /// What one camera path gives. Radiances are scene-linear Rec.709 and carry everything up to the eye;
 /// fields whose pass is not asked for stay 0 and are not read.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PixelSample {
     /// Radiance towards the camera, premultiplied by `alpha`.
     pub combined: Rgb,
@@ -73,6 +89,16 @@ pub struct PixelSample {
     pub denoising_depth: f32,
     /// What was seen, by name.
     pub crypto: CryptoSample,
+    /// Light by group, in the order of [`PassSet::groups`](super::PassSet::groups); empty, without
+    /// allocation, where no pass asks for groups.
+    pub groups: Box<[GroupSample]>,
+}
+
+impl PixelSample {
+    /// A sample that brings nothing, of `groups` light groups.
+    pub fn with_groups(groups: usize) -> Self {
+        Self { groups: vec![GroupSample::default(); groups].into(), ..Self::default() }
+    }
 }
 
 /// What the ray through the pixel's centre meets first: passes that must not be averaged.

@@ -7,16 +7,30 @@ use crate::sampling::{Decision, Dimension, Sampler, warp};
 use crate::scene::{Interaction, RayCone, Scene};
 use crate::settings::Settings;
 
-/// One sample of the openness at `it`, 1 where nothing is near. As in Cycles there is no clipping
-/// at the geometric plane.
-pub fn openness(scene: &Scene, sampler: &Sampler, vertex: u32, it: &Interaction, frame: &Frame, distance: f32) -> f32 {
-    let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
-    let w = frame.to_world(warp::sample_cosine_hemisphere(u));
-    scene.transmittance(&Ray { t_max: distance, ..it.spawn(w) }, Shadow::Cast)
+/// The openness at `it` by as many rays as the settings ask for, 1 where nothing is near. As in
+/// Cycles there is no clipping at the geometric plane.
+pub fn openness(
+    scene: &Scene,
+    sampler: &Sampler,
+    vertex: u32,
+    it: &Interaction,
+    frame: &Frame,
+    settings: &Settings,
+) -> f32 {
+    let (rays, t_max) = (settings.ao_samples, distance(settings));
+    let open: f32 = (0..rays)
+        .map(|k| {
+            let sampler = if rays > 1 { sampler.part(k, rays) } else { *sampler };
+            let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
+            let w = frame.to_world(warp::sample_cosine_hemisphere(u));
+            scene.transmittance(&Ray { t_max, ..it.spawn(w) }, Shadow::Cast)
+        })
+        .sum();
+    open / rays as f32
 }
 
 /// The distance that the settings give; without end unless set.
-pub fn distance(settings: &Settings) -> f32 {
+fn distance(settings: &Settings) -> f32 {
     settings.ao_distance.map_or(f32::INFINITY, |d| d as f32)
 }
 
@@ -27,7 +41,7 @@ pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings
         return sample;
     };
     let frame = scene.shading_frame(&it);
-    sample.ao = Rgb::splat(openness(scene, sampler, vertex, &it, &frame, distance(settings)));
+    sample.ao = Rgb::splat(openness(scene, sampler, vertex, &it, &frame, settings));
     sample.combined = sample.ao;
     sample.alpha = 1.0;
     super::first_hit::describe(scene, &it, &frame, &mut sample);

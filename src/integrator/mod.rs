@@ -5,6 +5,7 @@ mod direct;
 mod first_hit;
 mod media;
 mod path;
+mod scattering;
 mod shadow;
 mod split;
 

@@ -4,16 +4,17 @@
 //! for Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use super::ao;
-use super::direct::{leaks, receiver, sample_light};
+use super::direct::{Shading, leaks};
 use super::first_hit::describe;
 use super::media::Media;
-use super::shadow::{emission_weight, unoccluded_emission};
-use super::split::{add_scattered, shares, to_film};
-use crate::bsdf::{Bsdf, ByLobe, Lobe, View};
+use super::scattering::{Scattering, seen};
+use super::shadow::{emitters_along, mesh_weight};
+use super::split::{add_direct, add_indirect, add_unscattered, group, shares, to_film};
+use crate::bsdf::{Bsdf, ByLobe, Lobe};
 use crate::film::PixelSample;
-use crate::light::Receiver;
-use crate::math::{Frame, Ray, Rgb};
-use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
+use crate::light::{Emitter, Rules, Shadow};
+use crate::math::{Ray, Rgb, Vec3};
+use crate::sampling::{Decision, Dimension, Sampler};
 use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
 use crate::settings::Settings;
 
@@ -39,9 +40,11 @@ struct Path {
     media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
-    /// The last scattering's place and density, infinite for a delta: for MIS.
-    from: Receiver,
-    pdf: f32,
+    /// The last scattering; `None` for rays from the camera.
+    last: Option<Scattering>,
+    /// Where `ray` would have begun had it passed no surface since, and how far it has come.
+    start: Vec3,
+    travelled: f32,
 }
 
 impl Path {
@@ -56,8 +59,23 @@ impl Path {
             scatterings: 0,
             media: Media::default(),
             vertex: 0,
-            from: Receiver::everywhere(ray.o),
-            pdf: f32::INFINITY,
+            last: None,
+            start: ray.o,
+            travelled: 0.0,
+        }
+    }
+
+    /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
+    /// weight. Lights with shadow rules of their own are counted where the ray begins.
+    fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
+        if rules.shadow != Shadow::Cast || !rules.lights(last.from.class) {
+            return;
+        }
+        let l = seen(last.shares, rules.seen) * (self.beta * le);
+        if self.scatterings == 1 {
+            add_direct(sample, rules, l);
+        } else {
+            add_indirect(sample, rules, self.shares, l.sum());
         }
     }
 }
@@ -72,24 +90,31 @@ pub fn trace(
     max_bounces: u32,
 ) -> PixelSample {
     let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
-    let mut sample = PixelSample::default();
+    let mut sample = PixelSample::with_groups(scene.passes.groups().len());
     let mut path = Path::from_camera(ray, cone);
     loop {
-        let Some(it) = next_surface(scene, sampler, &mut path) else {
+        let surface = next_surface(scene, sampler, &mut path, |path, segment| {
+            if scene.effects.lamps {
+                add_lamps(scene, path, segment, &mut sample);
+            }
+        });
+        let Some(it) = surface else {
             add_background(scene, &path, &mut sample);
             break;
         };
+        add_emission(scene, &path, &it, &mut sample);
+        if path.scatterings > max_bounces {
+            break;
+        }
         let frame = scene.shading_frame(&it);
         if path.scatterings == 0 {
             sample.alpha = 1.0;
             describe(scene, &it, &frame, &mut sample);
             if scene.effects.ao {
-                let open = ao::openness(scene, sampler, path.vertex, &it, &frame, ao::distance(settings));
-                sample.ao = Rgb::splat(open);
+                sample.ao = Rgb::splat(ao::openness(scene, sampler, path.vertex, &it, &frame, settings));
             }
         }
-        add_emission(scene, &path, &it, &mut sample);
-        if scene.material(&it).unlit || path.scatterings > max_bounces {
+        if scene.material(&it).unlit {
             break;
         }
         path.beta *= path.occlusion;
@@ -104,10 +129,22 @@ pub fn trace(
         if !scene.effects.light {
             break;
         }
-        if !surface.is_delta_only() || (scene.effects.shadow && path.scatterings == 0) {
-            add_direct(scene, sampler, &path, &it, &frame, &bsdf, &mut sample);
+        let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
+        let light_samples = if path.scatterings == 0 { settings.light_samples } else { 1 };
+        if !surface.is_delta_only() {
+            for k in 0..light_samples {
+                let sampler = if light_samples > 1 { sampler.part(k, light_samples) } else { *sampler };
+                add_light(scene, &sampler, &path, &shading, light_samples as f32, &mut sample);
+            }
         }
-        if !scatter(scene, sampler, &mut path, &it, &frame, &bsdf, &mut sample) || !survives(sampler, &mut path) {
+        if path.scatterings == 0 && scene.effects.irradiance && bsdf.lacks_diffuse() {
+            add_irradiance(scene, sampler, &shading, &mut sample);
+        }
+        if !scatter(scene, sampler, &mut path, &shading, light_samples as f32, &mut sample) {
+            break;
+        }
+        let only_emitters = path.scatterings > max_bounces;
+        if (only_emitters && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
             break;
         }
     }
@@ -115,14 +152,24 @@ pub fn trace(
 }
 
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
-/// are passed by the odds of their opacity.
-fn next_surface(scene: &Scene, sampler: &Sampler, path: &mut Path) -> Option<Interaction> {
+/// are passed by the odds of their opacity. `segment` is called with each stretch of the way.
+fn next_surface(
+    scene: &Scene,
+    sampler: &Sampler,
+    path: &mut Path,
+    mut segment: impl FnMut(&Path, [f32; 2]),
+) -> Option<Interaction> {
     for _ in 0..MAX_TRANSPARENT {
-        let hit = scene.closest_hit(&path.ray, path.mask)?;
+        let Some(hit) = scene.closest_hit(&path.ray, path.mask) else {
+            segment(path, [path.travelled, f32::INFINITY]);
+            return None;
+        };
+        segment(path, [path.travelled, path.travelled + hit.t]);
         let it = scene.interaction(&path.ray, &hit, path.cone);
         path.vertex += 1;
+        path.travelled += hit.t;
         if scene.effects.absorption {
-            path.beta *= path.media.current().map(|sigma| (-sigma * hit.t).exp());
+            path.beta *= transmitted(&path.media, hit.t);
         }
         path.cone.width = path.cone.at(hit.t);
         if !scene.effects.cutouts || !scene.material(&it).is_cutout() {
@@ -139,30 +186,57 @@ fn next_surface(scene: &Scene, sampler: &Sampler, path: &mut Path) -> Option<Int
     None
 }
 
+/// What a stretch of `dist` metres inside `media` lets through.
+fn transmitted(media: &Media, dist: f32) -> Rgb {
+    media.current().map(|sigma| (-sigma * dist).exp())
+}
+
 /// The first surface that a ray from the camera does not pass, and its index of decisions.
 pub fn first_surface(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone) -> Option<(Interaction, u32)> {
     let mut path = Path::from_camera(ray, cone);
-    next_surface(scene, sampler, &mut path).map(|it| (it, path.vertex))
+    next_surface(scene, sampler, &mut path, |_, _| ()).map(|it| (it, path.vertex))
+}
+
+/// Lamps on a stretch of the way; they stop nothing.
+fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSample) {
+    let wi = path.ray.d;
+    scene.lights.lamps_along(path.start, wi, segment, |i, light, hit| {
+        let mut le = light.emitter.le(wi, Some(hit));
+        if scene.effects.absorption {
+            le = le * transmitted(&path.media, hit.dist - segment[0]);
+        }
+        match &path.last {
+            None if light.rules.seen.camera => {
+                sample.emission += path.beta * le;
+                sample.denoising_albedo += le;
+                add_unscattered(sample, &light.rules, path.beta * le);
+            }
+            None => {}
+            Some(last) => {
+                let le = le * last.mis_weight(scene, i, wi, Some(hit));
+                path.add_found(last, &light.rules, le, sample);
+            }
+        }
+    });
 }
 
 /// What lies behind everything.
 fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
-    if path.scatterings == 0 {
-        if scene.background_visible {
-            let le: Rgb = scene.background(path.ray.d).map(|(.., le)| le).sum();
-            sample.environment += path.beta * le;
-            sample.combined += path.beta * le;
-            sample.alpha = 1.0;
-        }
-        return;
+    if path.scatterings == 0 && scene.background_visible {
+        sample.alpha = 1.0;
     }
-    for (i, _, le) in scene.background(path.ray.d) {
-        let weight = if path.pdf.is_finite() {
-            power_heuristic(path.pdf, scene.lights.pdf_li(&path.from, i, path.ray.d, None))
-        } else {
-            1.0
-        };
-        add_scattered(sample, path.shares, path.beta * le * weight, path.scatterings);
+    for (i, light, le) in scene.background(path.ray.d) {
+        match &path.last {
+            None if light.rules.seen.camera => {
+                sample.environment += path.beta * le;
+                add_unscattered(sample, &light.rules, path.beta * le);
+            }
+            None => {}
+            Some(last) => {
+                let le = le * last.mis_weight(scene, i, path.ray.d, None);
+                path.add_found(last, &light.rules, le, sample);
+            }
+        }
     }
 }
 
@@ -172,77 +246,112 @@ fn add_emission(scene: &Scene, path: &Path, it: &Interaction, sample: &mut Pixel
     if le.is_black() {
         return;
     }
-    if path.scatterings == 0 {
-        sample.emission += path.beta * le;
-        sample.combined += path.beta * le;
-        sample.denoising_albedo += le;
-        return;
+    let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
+    match &path.last {
+        None => {
+            sample.emission += path.beta * le;
+            sample.denoising_albedo += le;
+            add_unscattered(sample, rules, path.beta * le);
+        }
+        Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
     }
-    let weight = if path.pdf.is_finite() { emission_weight(scene, &path.from, it, path.pdf) } else { 1.0 };
-    add_scattered(sample, path.shares, path.beta * le * weight, path.scatterings);
 }
 
-/// Direct light at `it` by light sampling, and its part of the shadow pass.
-fn add_direct(
+/// Direct light by light sampling, and its part of the shadow passes.
+fn add_light(
     scene: &Scene,
     sampler: &Sampler,
     path: &Path,
-    it: &Interaction,
-    frame: &Frame,
-    bsdf: &View<'_>,
+    shading: &Shading<'_>,
+    samples: f32,
     sample: &mut PixelSample,
 ) {
-    let first = path.scatterings == 0;
-    let shadow = first && scene.effects.shadow;
-    let Some(light) = sample_light(scene, sampler, path.vertex, it, frame, bsdf, shadow) else { return };
-    let arrives = light.unoccluded * light.visibility;
-    if first {
-        let direct = arrives * path.beta;
-        sample.combined += direct.sum();
-        sample.direct += to_film(direct);
-        if shadow {
-            sample.unshadowed += light.unoccluded.diffuse * path.beta;
-            sample.irradiance_unshadowed += light.irradiance;
-            sample.irradiance_shadowed += light.irradiance * light.visibility;
-        }
-    } else {
-        add_scattered(sample, path.shares, arrives.sum() * path.beta, path.scatterings + 1);
+    let Some(light) = shading.sample_light(scene, sampler, samples) else { return };
+    let unoccluded = light.unoccluded * (path.beta * (1.0 / samples));
+    let arrives = unoccluded * light.visibility;
+    if path.scatterings > 0 {
+        return add_indirect(sample, light.rules, path.shares, arrives.sum());
+    }
+    add_direct(sample, light.rules, arrives);
+    if scene.effects.shadow {
+        add_unshadowed(sample, light.rules, unoccluded.diffuse);
     }
 }
 
-/// Chooses where the path goes from `it`; false where it ends.
+fn add_unshadowed(sample: &mut PixelSample, rules: &Rules, l: Rgb) {
+    sample.unshadowed += l;
+    if let Some(group) = group(sample, rules) {
+        group.unshadowed += l;
+    }
+}
+
+/// Irradiance with and without shadows, for a surface without diffuse reflection.
+fn add_irradiance(scene: &Scene, sampler: &Sampler, shading: &Shading<'_>, sample: &mut PixelSample) {
+    let Some(light) = shading.sample_irradiance(scene, sampler) else { return };
+    let arrives = light.unoccluded * light.visibility;
+    sample.irradiance_unshadowed += light.unoccluded;
+    sample.irradiance_shadowed += arrives;
+    if let Some(group) = group(sample, light.rules) {
+        group.irradiance_unshadowed += light.unoccluded;
+        group.irradiance_shadowed += arrives;
+    }
+}
+
+/// Chooses where the path goes from a surface where `light_samples` were taken; false where it ends.
 fn scatter(
     scene: &Scene,
     sampler: &Sampler,
     path: &mut Path,
-    it: &Interaction,
-    frame: &Frame,
-    bsdf: &View<'_>,
+    shading: &Shading<'_>,
+    light_samples: f32,
     sample: &mut PixelSample,
 ) -> bool {
+    let it = shading.it;
     let uc = sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::BsdfLobe));
     let u = sampler.get_2d(Dimension::at_bounce(path.vertex, Decision::BsdfDirection));
-    let Some(scattered) = bsdf.sample(uc, u) else { return false };
-    let wi = frame.to_world(scattered.wi);
+    let Some(scattered) = shading.bsdf.sample(uc, u) else { return false };
+    let wi = shading.frame.to_world(scattered.wi);
     if leaks(it, wi, scattered.wi.z) {
         return false;
     }
     path.ray = it.spawn(wi);
-    path.from = receiver(scene, it, frame, bsdf);
-    path.pdf = if scattered.delta { f32::INFINITY } else { scattered.pdf };
+    path.start = it.p;
+    path.travelled = 0.0;
     if !scattered.delta {
         // A sample stands for the solid angle 1/pdf; textures seen by it need no finer detail.
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
-    if path.scatterings == 0 {
-        path.shares = shares(scattered.weight);
-        if scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK {
-            let emission = unoccluded_emission(scene, &path.from, &path.ray, path.cone, scattered.pdf);
-            sample.unshadowed += scattered.weight.diffuse * path.beta * emission;
-        }
-    }
+    let last = Scattering {
+        from: shading.receiver(scene),
+        pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
+        light_samples,
+        shares: shares(scattered.weight),
+    };
+    path.last = Some(last);
+    let first = path.scatterings == 0;
+    let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
+    if first {
+        path.shares = last.shares;
+    }
+    let unshadowed = first && scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK;
+    if unshadowed || scene.effects.own_shadows {
+        emitters_along(scene, &last, &path.ray, path.cone, unshadowed, |found| {
+            let weight = seen(scattered.weight, found.rules.seen);
+            if unshadowed {
+                add_unshadowed(sample, found.rules, weight.diffuse * (beta * found.le));
+            }
+            if found.rules.shadow != Shadow::Cast {
+                let l = weight * (beta * found.le * found.visibility(scene, &path.ray));
+                if first {
+                    add_direct(sample, found.rules, l);
+                } else {
+                    add_indirect(sample, found.rules, path.shares, l.sum());
+                }
+            }
+        });
+    }
     if scene.effects.absorption && scattered.lobe == Lobe::Transmission && !scene.material(it).thin {
         path.media.cross(scene.material(it).absorption, it.front);
     }

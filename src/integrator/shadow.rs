@@ -1,40 +1,83 @@
-//! The unshadowed half of the shadow pass that light sampling does not see.
+//! Emitters along a sampled direction whatever stands before them.
 //!
-//! Direct light is the sum of two strategies with MIS weights. Light sampling knows what would
-//! arrive without occluders anyway; for a ray that the surface has sampled, every emitter along it
-//! counts, whatever stands before. So Diffuse Direct = Shadow × Unshadowed holds for both.
+//! Direct light is the sum of two strategies with MIS weights. Light sampling knows what would arrive
+//! without occluders anyway; for a ray that the surface has sampled, every emitter along it counts as
+//! if it stood there alone. So Diffuse Direct = Shadow × Unshadowed holds for both strategies, and
+//! lights with shadow rules of their own have them in both.
 
-use crate::light::{EmitterHit, Receiver};
+use super::scattering::Scattering;
+use crate::light::{Emitter, EmitterHit, Rules, Shadow};
 use crate::math::{Ray, Rgb};
-use crate::sampling::power_heuristic;
 use crate::scene::{RayCone, Scene, mask};
 
 /// Triangles of emissive objects that one ray may pass before the rest is left out.
 const MAX_EMITTERS: u32 = 1024;
 
-/// Radiance along `ray` of all emitters as if each stood there alone, MIS-weighted for a direction
-/// that a surface at `from` has sampled with density `pdf`.
-pub fn unoccluded_emission(scene: &Scene, from: &Receiver, ray: &Ray, cone: RayCone, pdf: f32) -> Rgb {
-    let mut sum = Rgb::BLACK;
-    for (i, _, le) in scene.background(ray.d) {
-        let pdf_light = scene.lights.pdf_li(from, i, ray.d, None);
-        sum += le * power_heuristic(pdf, pdf_light);
-    }
-    let mut rest = *ray;
-    for _ in 0..MAX_EMITTERS {
-        let Some(hit) = scene.closest_hit(&rest, mask::EMITTER) else { break };
-        let it = scene.interaction(&rest, &hit, cone);
-        sum += scene.emission(&it) * scene.opacity(&it) * emission_weight(scene, from, &it, pdf);
-        rest = it.continued(&rest, hit.t);
-    }
-    sum
+/// Light of one emitter along a ray.
+pub struct Found<'a> {
+    /// Radiance, MIS-weighted.
+    pub le: Rgb,
+    /// Where the emitter is along the ray; infinite in the background.
+    pub dist: f32,
+    /// Its rules.
+    pub rules: &'a Rules,
 }
 
-/// MIS weight of the emission at `it`, found from `from` by a direction of density `pdf`.
-pub fn emission_weight(scene: &Scene, from: &Receiver, it: &crate::scene::Interaction, pdf: f32) -> f32 {
+impl Found<'_> {
+    /// Share of it that arrives at the origin of `ray`.
+    pub fn visibility(&self, scene: &Scene, ray: &Ray) -> f32 {
+        // Ends before the emitter, which may itself be something that stops light.
+        let t_max = self.dist * (1.0 - 1e-5);
+        scene.transmittance(&Ray { t_max, ..*ray }, self.rules.shadow)
+    }
+}
+
+/// Calls `visit` with every emitter that `ray` from `last` would meet; if `all` is false only with
+/// those whose light not everything stops.
+pub fn emitters_along(
+    scene: &Scene,
+    last: &Scattering,
+    ray: &Ray,
+    cone: RayCone,
+    all: bool,
+    mut visit: impl FnMut(Found<'_>),
+) {
+    let asked = |rules: &Rules| (all || rules.shadow != Shadow::Cast) && rules.lights(last.from.class);
+    for (i, light, le) in scene.background(ray.d).filter(|(_, light, _)| asked(&light.rules)) {
+        let le = le * last.mis_weight(scene, i, ray.d, None);
+        visit(Found { le, dist: f32::INFINITY, rules: &light.rules });
+    }
+    if scene.effects.lamps {
+        scene.lights.lamps_along(last.from.p, ray.d, [0.0, f32::INFINITY], |i, light, hit| {
+            if asked(&light.rules) {
+                let le = light.emitter.le(ray.d, Some(hit)) * last.mis_weight(scene, i, ray.d, Some(hit));
+                visit(Found { le, dist: hit.dist, rules: &light.rules });
+            }
+        });
+    }
+    if !scene.effects.emissive {
+        return;
+    }
+    let mut rest = *ray;
+    let mut travelled = 0.0;
+    for _ in 0..MAX_EMITTERS {
+        let Some(hit) = scene.closest_hit(&rest, mask::EMITTER) else { break };
+        travelled += hit.t;
+        let it = scene.interaction(&rest, &hit, cone);
+        let rules = scene.instance(it.instance).rules.as_deref();
+        if let Some(rules) = rules.filter(|rules| asked(rules)) {
+            let le = scene.emission(&it) * (scene.opacity(&it) * mesh_weight(scene, last, &it));
+            visit(Found { le, dist: travelled, rules });
+        }
+        rest = it.continued(&rest, hit.t);
+    }
+}
+
+/// MIS weight of the emission of the surface at `it`, which the ray from `last` has met.
+pub fn mesh_weight(scene: &Scene, last: &Scattering, it: &crate::scene::Interaction) -> f32 {
     let Some(light) = scene.instance(it.instance).light else { return 1.0 };
     let wi = -it.wo;
-    let hit = EmitterHit { dist: (it.p - from.p).dot(wi), ng: it.ng, triangle: it.triangle, uv: it.barycentrics };
-    let pdf_light = scene.lights.pdf_li(from, light, wi, Some(&hit));
-    power_heuristic(pdf, pdf_light)
+    let dist = (it.p - last.from.p).dot(wi);
+    let hit = EmitterHit { dist, ng: it.ng, triangle: it.triangle, uv: it.barycentrics };
+    last.mis_weight(scene, light, wi, Some(&hit))
 }

@@ -1,7 +1,9 @@
-//! Keeps apart, for the light-path passes, what reached the camera by which kind of scattering.
+//! Keeps apart, for the light-path passes and the light groups, what reached the camera by which kind
+//! of scattering and from which light.
 
 use crate::bsdf::ByLobe;
-use crate::film::{PixelSample, Split};
+use crate::film::{GroupSample, PixelSample, Split};
+use crate::light::Rules;
 use crate::math::Rgb;
 
 /// `by_lobe` as the film's own type.
@@ -19,9 +21,35 @@ pub fn shares(weight: ByLobe) -> ByLobe {
     }
 }
 
-/// Adds `l`, which was scattered `scatterings` times (at least once), first as `shares` say.
-pub fn add_scattered(sample: &mut PixelSample, shares: ByLobe, l: Rgb, scatterings: u32) {
+/// The sums of the light group of a light with `rules`; `None` where no pass asks for it.
+pub fn group<'a>(sample: &'a mut PixelSample, rules: &Rules) -> Option<&'a mut GroupSample> {
+    sample.groups.get_mut(usize::from(rules.group?))
+}
+
+/// Adds `l`, which came to the camera without scattering.
+pub fn add_unscattered(sample: &mut PixelSample, rules: &Rules, l: Rgb) {
     sample.combined += l;
-    let target = if scatterings == 1 { &mut sample.direct } else { &mut sample.indirect };
-    *target += to_film(shares * l);
+    if let Some(group) = group(sample, rules) {
+        group.combined += l;
+    }
+}
+
+/// Adds light that the first surface scattered, by class.
+pub fn add_direct(sample: &mut PixelSample, rules: &Rules, l: ByLobe) {
+    let sum = l.sum();
+    sample.combined += sum;
+    sample.direct += to_film(l);
+    if let Some(group) = group(sample, rules) {
+        group.combined += sum;
+        group.lit += l.diffuse;
+    }
+}
+
+/// Adds `l`, which was scattered more than once, first as `shares` say.
+pub fn add_indirect(sample: &mut PixelSample, rules: &Rules, shares: ByLobe, l: Rgb) {
+    sample.combined += l;
+    sample.indirect += to_film(shares * l);
+    if let Some(group) = group(sample, rules) {
+        group.combined += l;
+    }
 }

@@ -31,6 +31,8 @@ pub enum Decision {
     AoOpacity,
     /// Point on a light for the shadow passes, where they draw their own (2D).
     ShadowPoint,
+    /// Which light is asked for those (1D).
+    ShadowChoice,
 }
 
 /// Decisions of the camera come first, then each bounce has `STRIDE` of its own.
@@ -73,8 +75,8 @@ mod tests {
 
     #[test]
     fn names_are_distinct() {
-        let decisions = [Decision::BsdfLobe, Decision::LightPoint, Decision::ShadowPoint];
-        assert!((Decision::ShadowPoint as u32) < STRIDE);
+        let decisions = [Decision::BsdfLobe, Decision::LightPoint, Decision::ShadowChoice];
+        assert!((Decision::ShadowChoice as u32) < STRIDE);
         let mut seen = HashSet::from([Dimension::PIXEL, Dimension::LENS, Dimension::TIME, Dimension::FREE]);
         for bounce in (0..64).chain([(1 << 15) - 2]) {
             for decision in decisions {

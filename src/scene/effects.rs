@@ -3,7 +3,7 @@
 //! Absent effects build nothing and cast nothing. Every test of these flags stands at a coarse
 //! point: per pixel, per hit or per bounce.
 
-use crate::desc::{AlphaMode, MaterialDesc, ScalarInput, SceneDesc};
+use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -24,6 +24,16 @@ pub struct Effects {
     pub ao: bool,
     /// The shadow and unshadowed passes.
     pub shadow: bool,
+    /// The irradiance of surfaces without diffuse reflection, for those.
+    pub irradiance: bool,
+    /// Some light has a shape of its own that rays may meet.
+    pub lamps: bool,
+    /// Some object emits.
+    pub emissive: bool,
+    /// Some light can be found by rays that surfaces have sampled.
+    pub found_by_rays: bool,
+    /// Some light casts no shadow, or not that of every object.
+    pub own_shadows: bool,
     /// The albedo of the first surface.
     pub color: bool,
     /// Data of the first surface that average over samples: normal, uv, denoising.
@@ -35,9 +45,8 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// The effects that `scene` calls for under `settings`.
-    pub fn of(scene: &SceneDesc, settings: &Settings) -> Self {
-        let passes = &settings.passes;
+    /// The effects that `scene` calls for under `settings`, for `passes` with the scene's light groups.
+    pub fn of(scene: &SceneDesc, settings: &Settings, passes: &PassSet) -> Self {
         if settings.effects == EffectsMode::All {
             return Self::forced(passes);
         }
@@ -48,10 +57,19 @@ impl Effects {
         let any = |test: &dyn Fn(&MaterialDesc) -> bool| {
             scene.materials.iter().zip(&used).any(|(material, used)| *used && test(material))
         };
+        let lamps = scene.lights.iter().any(|light| light.kind.is_shape());
+        let emissive = any(&emits);
+        // A scene without lights gets a dome.
+        let in_background = scene.lights.iter().any(|light| light.kind.is_in_background()) || scene.lights.is_empty();
         Self {
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| !is_opaque(scene, m)),
             absorption: any(&absorbs),
+            lamps,
+            emissive,
+            found_by_rays: lamps || emissive || in_background || any(&|m| m.unlit),
+            own_shadows: scene.lights.iter().any(|light| has_own_shadow(&light.links))
+                || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
             occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
             ..Self::forced(passes)
         }
@@ -67,12 +85,25 @@ impl Effects {
             occlusion_maps: true,
             ao: passes.needs_ao(),
             shadow: passes.needs_shadow(),
+            irradiance: passes.needs_irradiance(),
+            lamps: true,
+            emissive: true,
+            found_by_rays: true,
+            own_shadows: true,
             color: passes.needs_color() || passes.needs_denoising(),
             geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs_denoising(),
             first_hit: passes.needs_first_hit(),
             cryptomatte: passes.needs_cryptomatte(),
         }
     }
+}
+
+fn has_own_shadow(links: &LightLinks) -> bool {
+    !links.cast_shadow || links.blockers.is_some()
+}
+
+pub(super) fn emits(material: &MaterialDesc) -> bool {
+    !material.unlit && material.emission_strength != 0.0 && material.emission.factor.iter().any(|&c| c != 0.0)
 }
 
 /// True where the material's opacity is 1 everywhere.

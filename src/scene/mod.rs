@@ -22,6 +22,7 @@ use std::sync::Arc;
 
 use crate::bvh::Bvh;
 use crate::camera::Camera;
+use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
 use crate::shape::Mesh;
@@ -35,6 +36,8 @@ pub struct Scene {
     pub size: [u32; 2],
     /// World position of render space's origin.
     pub origin: DVec3,
+    /// What is rendered: the passes asked for, with the scene's light groups.
+    pub passes: PassSet,
     /// What this scene can show.
     pub effects: Effects,
     /// All lights.

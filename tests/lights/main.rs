@@ -2,5 +2,14 @@
 //!
 //! Each light has a file with its cases; [`laws`] says what must hold for all of them.
 
+#[path = "../support/chi2.rs"]
+mod chi2;
+mod cylinder;
+mod laws;
+mod mesh;
+mod point;
+mod profile;
+mod quadrature;
 mod random;
 mod select;
+mod sphere;

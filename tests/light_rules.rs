@@ -1,0 +1,259 @@
+//! Shadow rules, linking, visibility and groups of lights, in whole renders, for every kind of light
+//! and every strategy that finds it.
+
+#[allow(dead_code)] // Not every test builds everything.
+#[path = "support/scene.rs"]
+mod scene;
+
+use std::f64::consts::PI;
+
+use penumbra::desc::{ColorInput, LightKind, LightLinks, LinkSet, MaterialDesc, ScalarInput, Visibility};
+use penumbra::math::{DAffine3, DVec3};
+use penumbra::settings::Settings;
+use scene::{Builder, close, mean, picture, settings};
+
+const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
+
+/// One light of each kind, two metres above the ground where it has a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Lamp(LightKind),
+    Mesh,
+}
+
+fn kinds() -> Vec<(&'static str, Kind)> {
+    let radiance = [3.0; 3];
+    let lamp = |name, kind| (name, Kind::Lamp(kind));
+    vec![
+        lamp("point", LightKind::Point { intensity: [5.0; 3] }),
+        lamp("sphere", LightKind::Sphere { radius: 0.5, radiance, facing: false }),
+        lamp("soft sphere", LightKind::Sphere { radius: 0.5, radiance, facing: true }),
+        lamp(
+            "rectangle",
+            LightKind::Rect { width: 1.5, height: 1.0, radiance, spread: PI, two_sided: false, image: None },
+        ),
+        lamp("disk", LightKind::Disk { width: 1.5, height: 1.0, radiance, spread: PI, two_sided: false }),
+        lamp("cylinder", LightKind::Cylinder { radius: 0.2, length: 2.0, radiance }),
+        lamp("sun without size", LightKind::Distant { irradiance: radiance, angle: 0.0 }),
+        lamp("sun", LightKind::Distant { irradiance: radiance, angle: 0.5 }),
+        lamp("dome", LightKind::Dome { radiance: [1.0; 3], image: None }),
+        ("mesh", Kind::Mesh),
+    ]
+}
+
+/// Ground that is half diffuse and half glossy, the light with `links` and `visibility`, and a camera
+/// that looks straight at the ground between the light and it.
+fn lit(kind: Kind, roughness: f64, links: LightLinks, visibility: Visibility) -> Builder {
+    let mut builder = Builder::default();
+    let ground = builder.material(MaterialDesc {
+        base_color: ColorInput::constant([0.5; 3]),
+        roughness: ScalarInput::constant(roughness),
+        ..MaterialDesc::default()
+    });
+    builder.ground(40.0, ground);
+    match kind {
+        Kind::Lamp(kind) => {
+            // Shines straight down.
+            let transform =
+                DAffine3::from_translation(DVec3::new(0.3, 2.0, 0.0)) * DAffine3::from_rotation_x(-0.5 * PI);
+            builder.light(kind, transform);
+            let light = builder.desc.lights.last_mut().unwrap();
+            (light.links, light.visibility) = (links, visibility);
+        }
+        Kind::Mesh => {
+            let glow = builder.material(MaterialDesc {
+                base_color: ColorInput::constant([0.0; 3]),
+                specular: ScalarInput::constant(0.0),
+                emission: ColorInput::constant([3.0; 3]),
+                ..MaterialDesc::default()
+            });
+            builder.quad([-0.5, 2.0, -0.5], [1.5, 0.0, 0.0], [0.0, 0.0, 1.0], glow);
+            let instance = builder.desc.instances.last_mut().unwrap();
+            (instance.links, instance.visibility) = (links, visibility);
+        }
+    }
+    builder.look([0.0; 3], [0.4, -0.5, 0.1], 0.2);
+    // Below every lid.
+    builder.desc.cameras[0].transform.translation *= 0.5;
+    builder
+}
+
+/// A wide lid one metre above the ground.
+fn add_lid(builder: &mut Builder) -> u32 {
+    let dark = builder.lambert(0.0);
+    builder.quad([-40.0, 1.0, -40.0], [80.0, 0.0, 0.0], [0.0, 0.0, 80.0], dark);
+    builder.desc.instances.len() as u32 - 1
+}
+
+fn direct(spp: u32) -> Settings {
+    Settings { max_bounces: 0, ..settings("all", spp) }
+}
+
+/// Diffuse and glossy direct light, Combined, and the shadow passes' values.
+fn values(builder: &Builder) -> [f64; 5] {
+    let picture = picture(&builder.desc, 6, &direct(1024));
+    ["Diffuse Direct", "Glossy Direct", "Combined", "Shadow", "Diffuse Direct Unshadowed"]
+        .map(|layer| mean(&picture, layer, 0))
+}
+
+fn same(what: &str, a: [f64; 5], b: [f64; 5]) {
+    for ((a, b), layer) in a.into_iter().zip(b).zip(["diffuse", "glossy", "combined", "shadow", "unshadowed"]) {
+        assert!((a - b).abs() <= 0.02 * b.abs().max(1e-3), "{what}, {layer}: {a} and {b}");
+    }
+}
+
+#[test]
+fn light_that_casts_no_shadow_passes_everything_whichever_strategy_finds_it() {
+    for (name, kind) in kinds() {
+        for roughness in [0.0, 0.2, 0.6] {
+            let what = format!("{name}, roughness {roughness}");
+            let links = LightLinks { cast_shadow: false, ..LightLinks::default() };
+            let free = values(&lit(kind, roughness, LightLinks::default(), Visibility::ALL));
+            assert!(free[0] > 0.0, "{what}");
+            let mut lidded = lit(kind, roughness, links, Visibility::ALL);
+            add_lid(&mut lidded);
+            same(&what, values(&lidded), free);
+            // The lid does stop the light of a light that casts shadows.
+            let mut dark = lit(kind, roughness, LightLinks::default(), Visibility::ALL);
+            add_lid(&mut dark);
+            let [diffuse, glossy, combined, shadow, unshadowed] = values(&dark);
+            assert_eq!([diffuse, glossy, combined, shadow], [0.0; 4], "{what}");
+            same(&what, [free[0], free[1], free[2], free[3], unshadowed], free);
+        }
+    }
+}
+
+#[test]
+fn only_linked_objects_stop_a_light() {
+    for (name, kind) in kinds() {
+        let free = values(&lit(kind, 0.3, LightLinks::default(), Visibility::ALL));
+        for (blocked, exclude) in [(false, true), (true, false)] {
+            let mut builder = lit(kind, 0.3, LightLinks::default(), Visibility::ALL);
+            let lid = add_lid(&mut builder);
+            let set = Some(LinkSet { instances: vec![lid], exclude });
+            match kind {
+                Kind::Mesh => builder.desc.instances[1].links.blockers = set,
+                Kind::Lamp(_) => builder.desc.lights[0].links.blockers = set,
+            }
+            let found = values(&builder);
+            if blocked {
+                assert_eq!(found[..4], [0.0; 4], "{name}");
+            } else {
+                same(name, found, free);
+            }
+        }
+    }
+}
+
+#[test]
+fn only_linked_objects_are_lit() {
+    for (name, kind) in kinds() {
+        for roughness in [0.0, 0.3] {
+            let free = values(&lit(kind, roughness, LightLinks::default(), Visibility::ALL));
+            for (is_lit, exclude) in [(false, true), (true, false)] {
+                let receivers = Some(LinkSet { instances: vec![0], exclude });
+                let links = LightLinks { receivers, ..LightLinks::default() };
+                let found = values(&lit(kind, roughness, links, Visibility::ALL));
+                if is_lit {
+                    same(name, found, free);
+                } else {
+                    // Nothing could have reached it.
+                    assert_eq!(found, [0.0, 0.0, 0.0, 1.0, 0.0], "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_light_lights_only_the_kinds_of_reflection_that_see_it() {
+    for (name, kind) in kinds() {
+        let free = values(&lit(kind, 0.3, LightLinks::default(), Visibility::ALL));
+        let no_diffuse = Visibility { diffuse: false, ..Visibility::ALL };
+        let found = values(&lit(kind, 0.3, LightLinks::default(), no_diffuse));
+        assert_eq!((found[0], found[4]), (0.0, 0.0), "{name}");
+        let no_glossy = Visibility { glossy: false, ..Visibility::ALL };
+        let dull = values(&lit(kind, 0.3, LightLinks::default(), no_glossy));
+        assert_eq!(dull[1], 0.0, "{name}");
+        if kind != Kind::Mesh {
+            same(name, [dull[0], found[1], free[2], free[3], dull[4]], free);
+        }
+    }
+}
+
+#[test]
+fn lamps_are_seen_without_alpha_and_by_whom_they_are_meant_to_be_seen() {
+    for (name, kind) in kinds() {
+        let Kind::Lamp(lamp) = kind else { continue };
+        if !lamp.is_shape() {
+            continue;
+        }
+        let mut builder = lit(kind, 0.5, LightLinks::default(), Visibility::ALL);
+        builder.desc.instances.clear();
+        builder.desc.meshes.clear();
+        builder.desc.cameras.clear();
+        // From below, straight into the light.
+        builder.look([0.3, 1.0, 0.0], [0.0, 1.0, 0.0], 0.05);
+        let seen = picture(&builder.desc, 4, &settings("combined,emission", 16));
+        close(name, mean(&seen, "Combined", 0), 3.0, 1e-5);
+        close(name, mean(&seen, "Emission", 1), 3.0, 1e-5);
+        assert_eq!(mean(&seen, "Combined", 3), 0.0, "{name}");
+        builder.desc.lights[0].visibility.camera = false;
+        assert_eq!(mean(&picture(&builder.desc, 4, &settings("combined", 4)), "Combined", 0), 0.0, "{name}");
+    }
+}
+
+/// A mirror shows lamps, and hides those that reflections do not see.
+#[test]
+fn mirrors_show_lamps() {
+    for (name, kind) in kinds() {
+        let Kind::Lamp(lamp) = kind else { continue };
+        if !lamp.is_shape() {
+            continue;
+        }
+        for glossy in [true, false] {
+            let visibility = Visibility { glossy, camera: false, ..Visibility::ALL };
+            let mut builder = lit(kind, 0.0, LightLinks::default(), visibility);
+            builder.desc.materials[0].metallic = ScalarInput::constant(1.0);
+            builder.desc.cameras.clear();
+            builder.look([0.3, 0.0, 0.0], DOWN, 0.05);
+            let picture = picture(&builder.desc, 4, &direct(16));
+            let expected = if glossy { 0.5 * 3.0 } else { 0.0 };
+            close(name, mean(&picture, "Combined", 0), expected, 1e-4);
+        }
+    }
+}
+
+#[test]
+fn groups_sum_to_the_picture_and_have_shadows_of_their_own() {
+    let mut builder = Builder::default();
+    let ground = builder.lambert(0.5);
+    builder.ground(40.0, ground);
+    for (i, (_, kind)) in kinds().into_iter().enumerate() {
+        if let Kind::Lamp(kind) = kind {
+            let place = DVec3::new(i as f64 - 4.0, 2.0, 0.0);
+            builder.light(kind, DAffine3::from_translation(place) * DAffine3::from_rotation_x(-0.5 * PI));
+            let group = if i % 2 == 0 { "key" } else { "fill" };
+            builder.desc.lights.last_mut().unwrap().links.group = Some(group.into());
+        }
+    }
+    builder.quad([-1.0, 1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0], ground);
+    builder.look([0.0; 3], [0.1, -0.5, 0.1], 1.0);
+    let both = picture(&builder.desc, 16, &settings("combined,combined_*,shadow_key,shadow_fill,shadow", 64));
+    let layer = |name: &str| both.layer(name).unwrap_or_else(|| panic!("{name}")).data.clone();
+    let (combined, key, fill) = (layer("Combined"), layer("Combined_key"), layer("Combined_fill"));
+    for pixel in 0..16 * 16 {
+        for c in 0..3 {
+            let (whole, sum) = (combined[4 * pixel + c], key[3 * pixel + c] + fill[3 * pixel + c]);
+            assert!((whole - sum).abs() <= 1e-5 * whole.max(1e-3), "pixel {pixel}: {whole} and {sum}");
+        }
+    }
+    // The shadow of a group is that of its lights alone.
+    for group in ["key", "fill"] {
+        let mut alone = builder.clone();
+        alone.desc.lights.retain(|light| light.links.group.as_deref() == Some(group));
+        let alone = picture(&alone.desc, 16, &settings("shadow", 64));
+        let expected = mean(&alone, "Shadow", 0);
+        close(group, mean(&both, &format!("Shadow_{group}"), 0), expected, 0.02);
+    }
+}
