@@ -375,7 +375,7 @@ fn lamp(random: &mut Random, i: usize) -> Light {
         1 => Sphere { center: p, radius: size as f32, radiance, facing: i % 2 == 0, profile }.into(),
         2 => Rect::new(flat, [size, 0.3 * size]).into(),
         3 => Disk::new(flat, [size, 0.5 * size]).into(),
-        _ => Cylinder::new(p.as_dvec3(), axes(random).x_axis, 0.2 * size, size, radiance, profile).into(),
+        _ => Cylinder::new(p, axes(random).x_axis.as_vec3(), 0.2 * size as f32, size as f32, radiance, profile).into(),
     }
 }
 
