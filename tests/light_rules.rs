@@ -78,10 +78,17 @@ fn lit(kind: Kind, roughness: f64, links: LightLinks, visibility: Visibility) ->
     builder
 }
 
-/// A wide lid one metre above the ground.
+/// A box over the ground, open below: nothing from above or from the horizon gets in.
 fn add_lid(builder: &mut Builder) -> u32 {
     let dark = builder.lambert(0.0);
-    builder.quad([-40.0, 1.0, -40.0], [80.0, 0.0, 0.0], [0.0, 0.0, 80.0], dark);
+    let corner = |i: usize| {
+        let side = |bit: usize| if i >> bit & 1 == 0 { -9.0 } else { 9.0 };
+        [side(0), if i & 4 == 0 { -1.0 } else { 1.0 }, side(1)]
+    };
+    let triangles = vec![[4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 3, 6], [3, 7, 6]];
+    let sides = [[0, 2, 4], [2, 6, 4], [1, 3, 5], [3, 7, 5]];
+    let points = (0..8).map(corner).collect();
+    builder.mesh(points, triangles.into_iter().chain(sides).collect(), dark, DAffine3::IDENTITY);
     builder.desc.instances.len() as u32 - 1
 }
 
