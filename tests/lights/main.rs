@@ -2,6 +2,7 @@
 //!
 //! Each light has a file with its cases; [`laws`] says what must hold for all of them.
 
+mod authored;
 #[path = "../support/chi2.rs"]
 mod chi2;
 mod cylinder;
@@ -12,4 +13,7 @@ mod point;
 mod profile;
 mod quadrature;
 mod rect;
+#[path = "../support/scene.rs"]
+#[allow(dead_code, reason = "each test binary uses a part")]
+mod scene;
 mod sphere;
