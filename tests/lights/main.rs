@@ -7,13 +7,18 @@ mod authored;
 mod chi2;
 mod cylinder;
 mod disk;
+mod distant;
+mod dome;
 mod laws;
 mod plane;
 mod point;
 mod profile;
 mod quadrature;
+mod random;
 mod rect;
 #[path = "../support/scene.rs"]
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;
+mod select;
 mod sphere;
+mod sun;
