@@ -22,7 +22,7 @@ const BLOCK: u32 = 8;
 
 /// Samples a pixel: 64 pixels of a block then bring the scatter of a shadow's edge below a tenth of
 /// what is asked.
-const SPP: u32 = 1024;
+const SPP: u32 = 512;
 
 /// A share of full scale.
 const TOLERANCE: f64 = 2e-3;

@@ -6,7 +6,7 @@ mod chi2;
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-use penumbra::math::Vec3;
+use penumbra::math::{DVec2, DVec3, Vec3};
 use penumbra::sampling::warp::*;
 use penumbra::sampling::{AliasTable, Dimension, Distribution2d, Pattern, Sampler};
 
@@ -81,6 +81,23 @@ const CONE: f32 = 0.35;
 static IMAGE: LazyLock<Distribution2d> =
     LazyLock::new(|| Distribution2d::new(17, 9, |x, y| if x == 3 { 0.0 } else { 1.0 + (x * y) as f64 }).unwrap());
 
+/// Half axes of an ellipse about `AT`, or half sides of a rectangle.
+const HALF: [f64; 2] = [1.3, 0.6];
+const AT: DVec3 = DVec3::new(0.4, -0.3, 0.7);
+
+static ELLIPSE: LazyLock<EllipticCone> = LazyLock::new(|| EllipticCone::new(AT, HALF).unwrap());
+
+static RECT: LazyLock<SphericalRect> = LazyLock::new(|| {
+    let range = |i: usize| [AT[i] - HALF[i], AT[i] + HALF[i]];
+    SphericalRect::new(range(0), range(1), AT.z).unwrap()
+});
+
+/// Where `w` meets the plane of `AT`, from there in units of `HALF`.
+fn on_plane(w: Vec3) -> Option<DVec2> {
+    let w = w.as_dvec3();
+    (w.z > 0.0).then(|| (w * (AT.z / w.z) - AT).truncate() / DVec2::from(HALF))
+}
+
 const WARPS: &[Warp] = &[
     Warp { name: "disk", domain: Domain::Disk, sample: |u| disk(sample_disk(u)), pdf: |_| PDF_DISK },
     Warp {
@@ -101,6 +118,24 @@ const WARPS: &[Warp] = &[
         domain: Domain::Sphere,
         sample: |u| sample_cone(u, CONE),
         pdf: |w| if 1.0 - w.z <= CONE { pdf_cone(CONE) } else { 0.0 },
+    },
+    Warp {
+        name: "elliptic cone",
+        domain: Domain::Sphere,
+        sample: |u| ELLIPSE.sample(u).0.as_vec3(),
+        pdf: |w| match on_plane(w) {
+            Some(at) if at.length_squared() <= 1.0 => ELLIPSE.pdf(w.as_dvec3()) as f32,
+            _ => 0.0,
+        },
+    },
+    Warp {
+        name: "spherical rectangle",
+        domain: Domain::Sphere,
+        sample: |u| DVec2::from(RECT.sample(u)).extend(AT.z).normalize().as_vec3(),
+        pdf: |w| match on_plane(w) {
+            Some(at) if at.abs().max_element() <= 1.0 => (1.0 / RECT.solid_angle()) as f32,
+            _ => 0.0,
+        },
     },
     Warp { name: "triangle", domain: Domain::Triangle, sample: |u| Vec3::from(sample_triangle(u)), pdf: |_| 1.0 },
     Warp { name: "image", domain: Domain::Square, sample: |u| disk(IMAGE.sample(u).p), pdf: |p| IMAGE.pdf([p.x, p.y]) },
@@ -142,8 +177,9 @@ fn all_of_the_square_maps_into_the_domain_where_the_density_is_positive() {
             for &v in &all {
                 let p = (warp.sample)([u, v]);
                 assert!(warp.domain.contains(p), "{} {u} {v}: {p}", warp.name);
-                // The border of the cone is where 1 − z is rounded.
-                assert!(warp.name == "cone" || (warp.pdf)(p) > 0.0, "{} {u} {v}: {p}", warp.name);
+                // At a border rounding decides.
+                let borders = ["cone", "elliptic cone", "spherical rectangle"].contains(&warp.name);
+                assert!(borders || (warp.pdf)(p) > 0.0, "{} {u} {v}: {p}", warp.name);
             }
         }
     }

@@ -5,13 +5,14 @@ use crate::math::{DVec2, DVec3};
 use crate::sampling::warp::{self, EllipticCone, SphericalRect};
 
 /// Square of the ratio of half diagonal to distance below which a light is sampled by area. Within it
-/// `cos θ / d²` has a standard deviation of at most 1.5% over the light, a relative variance of 2e-4 of
-/// one sample, which the cosine at the receiver has as well; a penumbra has 1. Sampling by area takes
-/// a quarter of the time and is exact at any distance.
+/// `cos θ / d²` varies over the light with a relative variance below 1e-3, as the cosine at the receiver
+/// does as well; a penumbra's is 1. Sampling by area takes a third of the time and is exact at any
+/// distance.
 const FAR_SQUARED: f64 = 1.0 / (64.0 * 64.0);
 
 /// Half angles of a spread, radians, above which its footprint is better sampled by solid angle than
-/// by the spread's own falloff.
+/// by the spread's own falloff: relative variances on a facing surface are 0.32 and 0.56 here, 0.00
+/// and 0.92 for narrow spreads; they cross at 1.08.
 const WIDE: f64 = 1.0;
 
 /// The share of a flat light that is sampled from a point, and how. Positions are relative to the foot
@@ -166,4 +167,32 @@ impl Aim {
 /// Of an ellipse by its half axes.
 pub(super) fn area_of(half: [f64; 2]) -> f64 {
     std::f64::consts::PI * half[0] * half[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_lights_vary_little() {
+        let mut worst: f64 = 0.0;
+        for (half, azimuth, elevation) in [[1.0, 1.0], [1.0, 0.01]].into_iter().flat_map(|half| {
+            (0..8).flat_map(move |i| (0..8).map(move |j| (half, 0.2 * f64::from(i), 0.05 + 0.2 * f64::from(j))))
+        }) {
+            let dist = 1.001 * DVec2::from(half).length() / FAR_SQUARED.sqrt();
+            let h = dist * elevation.sin();
+            let center = DVec2::from_angle(azimuth) * (dist * elevation.cos());
+            let aim = Aim::rect(center, half, h, &Spread::FULL).unwrap();
+            assert!(matches!(aim, Aim::Area { .. }));
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for k in 0..64 * 64 {
+                let u = [k % 64, k / 64].map(|i| (i as f32 + 0.5) / 64.0);
+                let (at, density) = aim.sample(u, h);
+                let value = 1.0 / density.in_solid_angle(at, h);
+                (sum, squares) = (sum + value, squares + value * value);
+            }
+            worst = worst.max(squares * 4096.0 / (sum * sum) - 1.0);
+        }
+        assert!((1e-4..1e-3).contains(&worst), "{worst}");
+    }
 }

@@ -15,12 +15,15 @@ pub struct Disk {
     flat: Flat,
     /// Half axes along local x and y, metres, above 0.
     half: [f64; 2],
+    bounds: LightBounds,
 }
 
 impl Disk {
     /// An ellipse with the half axes `half` along local x and y, metres, both above 0.
     pub fn new(flat: Flat, half: [f64; 2]) -> Self {
-        Self { flat, half }
+        let reach = |i: usize| (flat.axes.x_axis[i] * half[0]).hypot(flat.axes.y_axis[i] * half[1]);
+        let bounds = flat.light_bounds(area_of(half), [reach(0), reach(1), reach(2)].into());
+        Self { flat, half, bounds }
     }
 
     fn aim(&self, view: &View) -> Option<Aim> {
@@ -65,13 +68,11 @@ impl Emitter for Disk {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        let [x, y] = self.half;
-        let reach = |i: usize| (self.flat.axes.x_axis[i] * x).hypot(self.flat.axes.y_axis[i] * y);
-        Some(self.flat.light_bounds(area_of(self.half), [reach(0), reach(1), reach(2)].into()))
+        Some(self.bounds)
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
-        self.bounds().map_or(0.0, |bounds| self.flat.importance(&bounds, at))
+        self.flat.importance(&self.bounds, at)
     }
 
     fn power(&self, _scene: Bounds) -> f32 {

@@ -146,12 +146,29 @@ impl Flat {
             return (sides * PI * area) as f32 * self.radiance.luminance();
         };
         let axis = self.axes.z_axis;
-        let mean = profile.mean_weighted(&|w| {
-            let cos = -axis.dot(w.as_dvec3());
-            let cos = if self.two_sided { cos.abs() } else { cos.max(0.0) };
-            let tan = (1.0 - cos * cos).max(0.0).sqrt() / cos;
-            if cos > 0.0 { cos * self.spread.factor(tan) } else { 0.0 }
-        });
-        (4.0 * PI * area) as f32 * (self.radiance * mean).luminance()
+        let front = self.projected(profile, -axis);
+        let shaped = if self.two_sided { front + self.projected(profile, axis) } else { front };
+        area as f32 * (self.radiance * shaped).luminance()
+    }
+
+    /// Integral of spread and profile times the cosine over the directions to the side of `axis`.
+    fn projected(&self, profile: &Profile, axis: DVec3) -> Rgb {
+        if self.spread.is_full() {
+            let cos = |w: Vec3| axis.dot(w.as_dvec3()).max(0.0);
+            return profile.mean_weighted(&cos) * (4.0 * PI as f32);
+        }
+        // Within the cone alone, which may be too narrow for a rule over all directions.
+        let (azimuths, angles) = (64, 256);
+        let step = self.spread.half_angle() / f64::from(angles);
+        let ring = |i: u32| -> Rgb {
+            let (sin, cos) = (step * (f64::from(i) + 0.5)).sin_cos();
+            let weight = self.spread.factor(sin / cos) * cos * sin * step * 2.0 * PI / f64::from(azimuths);
+            let shape = |j: u32| {
+                let around = DVec2::from_angle(2.0 * PI * (f64::from(j) + 0.5) / f64::from(azimuths)) * sin;
+                profile.shape(self.axes * around.extend(0.0) + axis * cos, false)
+            };
+            (0..azimuths).map(shape).sum::<Rgb>() * weight as f32
+        };
+        (0..angles).map(ring).sum()
     }
 }

@@ -112,7 +112,7 @@ impl Profile {
 
     /// The factor of direction `w`, unit or not; `averaged` takes the mean of a measured distribution
     /// over all azimuths.
-    fn shape(&self, w: DVec3, averaged: bool) -> Rgb {
+    pub(super) fn shape(&self, w: DVec3, averaged: bool) -> Rgb {
         let shaping = &self.shaping;
         let mut factor = 1.0;
         if let Some(cone) = &shaping.cone {

@@ -21,18 +21,21 @@ pub struct Rect {
     half: [f64; 2],
     /// Radiance where it varies.
     texture: Option<Arc<dyn Emission>>,
+    bounds: LightBounds,
 }
 
 impl Rect {
     /// A rectangle with half the sizes `half` along local x and y, metres, both above 0.
     pub fn new(flat: Flat, half: [f64; 2]) -> Self {
-        Self { flat, half, texture: None }
+        let reach = flat.axes.x_axis.abs() * half[0] + flat.axes.y_axis.abs() * half[1];
+        let bounds = flat.light_bounds(4.0 * half[0] * half[1], reach);
+        Self { flat, half, texture: None, bounds }
     }
 
     /// With radiance that varies, instead of that of `flat`.
     pub fn textured(self, texture: Arc<dyn Emission>) -> Self {
         let flat = Flat { radiance: texture.mean(0), ..self.flat };
-        Self { flat, texture: Some(texture), ..self }
+        Self { texture: Some(texture), ..Self::new(flat, self.half) }
     }
 
     fn aim(&self, view: &View) -> Option<Aim> {
@@ -46,10 +49,6 @@ impl Rect {
 
     fn emitted(&self, uv: [f32; 2]) -> Rgb {
         self.texture.as_ref().map_or(self.flat.radiance, |texture| texture.radiance(0, uv))
-    }
-
-    fn area(&self) -> f64 {
-        4.0 * self.half[0] * self.half[1]
     }
 }
 
@@ -80,16 +79,14 @@ impl Emitter for Rect {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        let [x, y] = self.half;
-        let reach = self.flat.axes.x_axis.abs() * x + self.flat.axes.y_axis.abs() * y;
-        Some(self.flat.light_bounds(self.area(), reach))
+        Some(self.bounds)
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
-        self.bounds().map_or(0.0, |bounds| self.flat.importance(&bounds, at))
+        self.flat.importance(&self.bounds, at)
     }
 
     fn power(&self, _scene: Bounds) -> f32 {
-        self.flat.power(self.area())
+        self.flat.power(4.0 * self.half[0] * self.half[1])
     }
 }

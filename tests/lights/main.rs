@@ -2,6 +2,7 @@
 //!
 //! Each light has a file with its cases; [`laws`] says what must hold for all of them.
 
+mod authored;
 #[path = "../support/chi2.rs"]
 mod chi2;
 mod cylinder;
@@ -15,6 +16,9 @@ mod profile;
 mod quadrature;
 mod random;
 mod rect;
+#[path = "../support/scene.rs"]
+#[allow(dead_code, reason = "each test binary uses a part")]
+mod scene;
 mod select;
 mod sphere;
 mod sun;

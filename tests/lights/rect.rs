@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use penumbra::light::{Emission, Emitter, Flat, Receiver, Rect, Spread};
+use penumbra::light::{Decay, Emission, Emitter, Flat, Profile, Receiver, Rect, Shaping, Spread};
 use penumbra::math::{Bounds, DQuat, DVec2, DVec3, Rgb, Vec3};
 
 use crate::laws::{Case, hold, irradiance_holds};
@@ -214,6 +214,24 @@ fn textures_stand_upright_before_who_looks() {
     });
     let (axis, angle) = cone_around(&pose.corners([0.5, 0.25]), Vec3::ZERO);
     hold(&[Case::new("textured", rect, Vec3::ZERO, n, exact).within(axis, angle)]);
+}
+
+#[test]
+fn a_profile_multiplies_radiance_and_power() {
+    // Focus: cos² of the angle to the axis; power is its mean by the cosine, a half.
+    let pose = turned();
+    let shaping = Shaping { focus: 2.0, ..Shaping::default() };
+    let profile = Some(Arc::new(Profile::new(pose.axes, shaping, Decay::PHYSICAL)));
+    for (s, share) in [(PI, 0.5), (1e-3, 1.0)] {
+        let flat = Flat { profile: profile.clone(), spread: Spread::new(s), ..pose.flat(2.0) };
+        let power = f64::from(Rect::new(flat, [0.6, 0.2]).power(Bounds::EMPTY));
+        assert!((power / (PI * 2.0 * 0.48 * share) - 1.0).abs() < 2e-3, "spread {s}: {power}");
+    }
+    let half = DVec2::new(0.6, 0.2);
+    let exact = quadrature(&pose, [-half, half], 1000, Vec3::ZERO, TILTED, &|_, tan| 1.0 / (1.0 + tan * tan));
+    let (axis, angle) = cone_around(&pose.corners(half.into()), Vec3::ZERO);
+    let rect = Rect::new(Flat { profile, ..pose.flat(1.0) }, half.into());
+    hold(&[Case::new("focus", rect, Vec3::ZERO, TILTED, exact).within(axis, angle)]);
 }
 
 #[test]

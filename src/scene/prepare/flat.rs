@@ -104,9 +104,10 @@ fn mean(image: &Image, mended: &mut Mended) -> Rgb {
             negative += usize::from(texel[..3].iter().any(|v| *v < 0.0));
         }
     }
-    if negative > 0 {
-        mended.note(format!("{negative} pixels of its image \"{}\" are negative: taken as 0", image.name()));
-    }
     let texels = f64::from(image.width()) * f64::from(image.height());
+    if negative > 0 {
+        let name = image.name();
+        mended.note(format!("{negative} of {texels} pixels of its image \"{name}\" are negative: taken as 0"));
+    }
     Rgb::from(sum.map(|sum| sum / texels))
 }
