@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use penumbra::math::Vec3;
 use penumbra::sampling::warp::*;
-use penumbra::sampling::{AliasTable, Dimension, Distribution2d, Pattern, Sampler};
+use penumbra::sampling::{AliasTable, BilinearImage, Dimension, Distribution2d, Pattern, Sampler};
 
 /// What a warp maps to, as an area-preserving image of the unit square.
 #[derive(Clone, Copy)]
@@ -81,6 +81,17 @@ const CONE: f32 = 0.35;
 static IMAGE: LazyLock<Distribution2d> =
     LazyLock::new(|| Distribution2d::new(17, 9, |x, y| if x == 3 { 0.0 } else { 1.0 + (x * y) as f64 }).unwrap());
 
+/// Weights of a bilinear image: zeros, and a texel that holds most of it.
+fn bilinear_weight(x: usize, y: usize) -> f64 {
+    match (x, y) {
+        (5, 2) => 300.0,
+        (9.., 4..) => 0.0,
+        _ => 1.0 + (x * y) as f64,
+    }
+}
+
+static BILINEAR: LazyLock<BilinearImage> = LazyLock::new(|| BilinearImage::new(13, 7, bilinear_weight).unwrap());
+
 const WARPS: &[Warp] = &[
     Warp { name: "disk", domain: Domain::Disk, sample: |u| disk(sample_disk(u)), pdf: |_| PDF_DISK },
     Warp {
@@ -103,6 +114,15 @@ const WARPS: &[Warp] = &[
         pdf: |w| if 1.0 - w.z <= CONE { pdf_cone(CONE) } else { 0.0 },
     },
     Warp { name: "triangle", domain: Domain::Triangle, sample: |u| Vec3::from(sample_triangle(u)), pdf: |_| 1.0 },
+    Warp {
+        name: "bilinear image",
+        domain: Domain::Square,
+        sample: |u| {
+            let p = BILINEAR.sample(u.map(|u| f64::from(u) + 2.0_f64.powi(-25)), bilinear_weight).p;
+            disk(p.map(|p| (p as f32).min(1.0 - f32::EPSILON)))
+        },
+        pdf: |p| BILINEAR.pdf([p.x.into(), p.y.into()], bilinear_weight) as f32,
+    },
     Warp { name: "image", domain: Domain::Square, sample: |u| disk(IMAGE.sample(u).p), pdf: |p| IMAGE.pdf([p.x, p.y]) },
 ];
 
