@@ -39,8 +39,12 @@ pub(super) struct Lobe {
     pub cos_normals: f32,
     /// Cosine of the half angle of the cone of all directions of emission.
     pub cos_cone: f32,
-    /// Intensity; negative where both sides emit.
+    /// Sum of the intensities of all emitters, each along its normal; negative where both sides emit.
     pub intensity: f32,
+    /// Length of the mean normal, weighted by intensity.
+    pub mean_normal: f32,
+    /// Share of the intensity that is the same in all directions.
+    pub isotropic: f32,
 }
 
 /// A receiver as the importance needs it.
@@ -56,7 +60,7 @@ pub(super) struct Asked {
 
 /// Share of a box's squared radius by which the squared distance to its middle is lengthened: the
 /// mean of 1/d² over the box stays finite from inside of it.
-const INSIDE: f32 = 0.25;
+const INSIDE: f32 = 0.1;
 
 /// Weights are between these: neither underflow nor a light at zero distance hides any other.
 const LEAST: f32 = 1e-36;
@@ -69,11 +73,17 @@ impl LightBounds {
     }
 
     pub(super) fn lobe(&self) -> Lobe {
+        let isotropic = if self.cos_normals <= -1.0 { 1.0 } else { 0.0 };
+        self.lobe_of(self.intensity, 1.0 - isotropic, isotropic)
+    }
+
+    /// The lobe of many lights with these bounds, whose intensities sum to `intensity`.
+    pub(super) fn lobe_of(&self, intensity: f32, mean_normal: f32, isotropic: f32) -> Lobe {
         let center = self.bounds.center();
         let half = (self.bounds.max - center).max(center - self.bounds.min).max(Vec3::ZERO);
         let (cos_n, cos_e) = (f64::from(self.cos_normals), f64::from(self.cos_emission));
         let cone = cos_n.clamp(-1.0, 1.0).acos() + cos_e.clamp(-1.0, 1.0).acos();
-        let intensity = if self.intensity > 0.0 { self.intensity } else { 0.0 };
+        let intensity = if intensity > 0.0 { intensity } else { 0.0 };
         Lobe {
             center: center.to_array(),
             half: (half + center.abs() * gamma(2)).to_array(),
@@ -81,6 +91,8 @@ impl LightBounds {
             cos_normals: self.cos_normals,
             cos_cone: round_down(if cone < std::f64::consts::PI { cone.cos() } else { -1.0 }),
             intensity: if self.two_sided { -intensity } else { intensity },
+            mean_normal,
+            isotropic,
         }
     }
 }
@@ -123,17 +135,22 @@ impl Lobe {
         let received = mean_positive(above, extent(at.n) + slack) * per_dist;
         let received = if at.any_side { 1.0 } else { received };
 
-        // Distance along the axis and off it, and along the normal that is nearest to the direction.
+        // Heights of the receiver above emitters: the mean, and those above the normals that are nearest
+        // to its direction and farthest off, the box's extent along them included.
         let along = -dot(self.axis, d);
-        let along = if self.intensity < 0.0 { along.abs() } else { along };
+        let two_sided = self.intensity < 0.0;
+        let along = if two_sided { along.abs() } else { along };
         let off = larger(dist_squared - along * along, 0.0).sqrt();
         let sin_normals = larger(1.0 - self.cos_normals * self.cos_normals, 0.0).sqrt();
-        let nearest = along * self.cos_normals + off * sin_normals;
-        let nearest = if along >= dist * self.cos_normals { dist } else { nearest };
+        let (middle, tilt) = (along * self.cos_normals, off * sin_normals);
+        let nearest = if along >= dist * self.cos_normals { dist } else { middle + tilt };
+        let farthest = if along <= -dist * self.cos_normals { -dist } else { middle - tilt };
         let reach = smaller(extent(self.axis) + radius * sin_normals, radius);
-        let reach = if self.cos_normals < 0.0 { radius } else { reach };
-        let emitted = mean_positive(nearest, reach + slack) * per_dist;
-        let emitted = if self.cos_normals <= -1.0 { 1.0 } else { emitted };
+        let reach = if self.cos_normals < 0.0 { radius } else { reach } + slack;
+        let mean = along * self.mean_normal;
+        let front = mean_positive(mean, nearest + reach - mean);
+        let back = mean_positive(-mean, mean - farthest + reach);
+        let emitted = (if two_sided { front + back } else { front }) * per_dist + self.isotropic;
 
         // Distance to the cone of emission: from its mantle, or its apex.
         let sin_cone = larger(1.0 - self.cos_cone * self.cos_cone, 0.0).sqrt();
@@ -147,8 +164,8 @@ impl Lobe {
     }
 }
 
-/// Mean of the positive part of a height that is uniform in `middle ± half`: 0 only where all of that
-/// is below.
+/// Mean of the positive part of a height that is uniform in `middle ± half`, roughly, at most
+/// `middle + half`: 0 only where all of that is below.
 #[inline(always)]
 fn mean_positive(middle: f32, half: f32) -> f32 {
     let top = smaller(larger(middle + half, 0.0), 2.0 * half);

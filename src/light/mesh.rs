@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::bounds::Asked;
 use super::tree::refined;
-use super::{Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
 use crate::math::{Affine3A, Bounds, DVec3, Mat3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
 use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
 use crate::shape::Mesh;
@@ -25,15 +25,6 @@ const SOLID_ANGLES: std::ops::Range<f64> = 1e-9..TAU * (1.0 - 1e-9);
 
 /// Numbers the choice of a triangle among those that draw on one random number.
 const TRIANGLE: u32 = 1;
-
-/// How a mesh emits.
-pub trait Emission: Send + Sync + std::fmt::Debug {
-    /// Emitted radiance at `(1 − u − v) p0 + u p1 + v p2` of `triangle`.
-    fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
-
-    /// Mean radiance of `triangle`, by which it is chosen: 0 only where it is dark all over.
-    fn mean(&self, triangle: u32) -> Rgb;
-}
 
 /// All emissive triangles of a mesh, emitting on both sides.
 #[derive(Debug)]
@@ -212,6 +203,14 @@ fn placed_bounds(tree: &LightTree, to_render: &Affine3A, m: crate::math::DMat3) 
 }
 
 impl Triangle {
+    /// True where `p` lies in the triangle's plane but for rounding, as the points of an emissive mesh
+    /// lie in their own triangle: nothing is sent there, and on which side rounding has left `p` is chance.
+    fn is_level_with(&self, p: Vec3) -> bool {
+        let height = self.cross.dot(p.as_dvec3() - self.p[0].as_dvec3()).abs();
+        let p_err = (self.p_err + p.abs() * gamma(16)).as_dvec3();
+        height <= self.cross.abs().dot(p_err)
+    }
+
     /// Unit directions from `p` to the corners, if the triangle is to be sampled by solid angle.
     fn near(&self, p: Vec3) -> Option<[DVec3; 3]> {
         let [a, b, c] = self.p.map(|corner| corner.as_dvec3() - p.as_dvec3());
@@ -243,6 +242,9 @@ impl Emitter for MeshLight {
         let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(uc, &asked, TRIANGLE))?;
         let index = self.emitters.triangle_of(chosen.item);
         let triangle = self.triangle(index);
+        if triangle.is_level_with(at.p) {
+            return None;
+        }
         let ng = triangle.cross.normalize_or_zero().as_vec3();
         let spherical = triangle.near(at.p).and_then(SphericalTriangle::new);
         let spherical = spherical.filter(|s| SOLID_ANGLES.contains(&s.solid_angle()));
@@ -279,6 +281,9 @@ impl Emitter for MeshLight {
         let Some(hit) = hit else { return 0.0 };
         let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
         let triangle = self.triangle(hit.triangle);
+        if triangle.is_level_with(at.p) {
+            return 0.0;
+        }
         let solid_angle = triangle.near(at.p).map(solid_angle_of_triangle);
         let density = match solid_angle.filter(|angle| SOLID_ANGLES.contains(angle)) {
             Some(angle) => 1.0 / angle,

@@ -3,30 +3,41 @@
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
+mod aim;
 mod bounds;
 mod choice;
 mod cylinder;
+mod disk;
 mod distant;
 mod dome;
+mod emission;
+mod flat;
 mod light;
 mod mesh;
 mod point;
 mod profile;
+mod rect;
 mod select;
 mod sphere;
+mod spread;
 mod tree;
 
 pub use bounds::LightBounds;
 pub use choice::{Choice, Strategy};
 pub use cylinder::Cylinder;
+pub use disk::Disk;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
+pub use emission::Emission;
+pub use flat::Flat;
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, MeshEmitters, MeshLight};
+pub use mesh::{MeshEmitters, MeshLight};
 pub use point::Point;
 pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
+pub use rect::Rect;
 pub use select::LightSet;
 pub use sphere::Sphere;
+pub use spread::Spread;
 pub use tree::{ChosenItem, LightTree};
 
 use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
@@ -164,7 +175,7 @@ macro_rules! emitters {
 
 emitters!(
     Point, // a delta
-    Sphere, Cylinder, // lamps
+    Sphere, Cylinder, Rect, Disk, // lamps
     Distant, Dome, MeshLight,
 );
 

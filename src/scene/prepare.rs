@@ -3,6 +3,7 @@
 mod camera;
 mod dome;
 mod emissive;
+mod flat;
 mod geometry;
 mod lamp;
 mod lights;

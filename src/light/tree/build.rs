@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::cluster::{Cluster, cos_of_cone};
 use super::node::{Child, Node, WIDTH};
 use crate::light::LightBounds;
+use crate::light::bounds::Lobe;
 use crate::math::Vec3;
 
 /// Bins along each axis in which splits are tried.
@@ -65,19 +66,20 @@ fn node(items: &mut [Item], cluster: Cluster, level: u32) -> Vec<Node> {
         rest = others;
     }
     let below = |(part, own): &mut (Part, &mut [Item])| {
-        let bounds = bounds_of(own, &part.cluster);
-        let nodes = if own.len() > 1 { node(own, part.cluster, level + 1) } else { Vec::new() };
-        (bounds, nodes)
+        if let [item] = own {
+            return (item.bounds.lobe(), Vec::new());
+        }
+        (part.cluster.lobe(&bounds_of(own, &part.cluster)), node(own, part.cluster, level + 1))
     };
     let parallel = lists.iter().map(|(part, _)| part.len()).sum::<usize>() > PARALLEL;
-    let built: Vec<(LightBounds, Vec<Node>)> =
+    let built: Vec<(Lobe, Vec<Node>)> =
         if parallel { lists.par_iter_mut().map(below).collect() } else { lists.iter_mut().map(below).collect() };
 
     let mut nodes = vec![Node::EMPTY];
-    for (slot, ((bounds, below), (_, own))) in built.into_iter().zip(&lists).enumerate() {
+    for (slot, ((lobe, below), (_, own))) in built.into_iter().zip(&lists).enumerate() {
         let first = nodes.len() as u32;
         let child = if below.is_empty() { Child::Light(own[0].index) } else { Child::Node(first) };
-        nodes[0].set(slot, if below.is_empty() { &own[0].bounds } else { &bounds }, child);
+        nodes[0].set(slot, &lobe, child);
         nodes.extend(below.into_iter().map(|mut node| {
             node.shift(first);
             node
@@ -119,25 +121,36 @@ fn split(items: &mut [Item], part: &Part, halve: bool) -> [Part; 2] {
     let own = &mut items[part.start..part.end];
     let (centers, side) = (part.cluster.centers, part.cluster.axis());
     let best = if halve { None } else { best_plane(own, part, side) };
-    let middle = match best {
-        Some((axis, plane)) => partition(own, |item| bin(item, part, axis) <= plane),
+    let (middle, clusters) = match best {
+        Some(plane) => {
+            let middle = partition(own, |item| bin(item, part, plane.axis) <= plane.last);
+            (middle, plane.clusters)
+        }
         None => {
-            let extent = centers.extent();
-            let axis = extent.max_position();
+            let axis = centers.extent().max_position();
             let half = own.len() / 2;
             let key = |item: &Item| (item.bounds.bounds.center()[axis], item.index);
             own.select_nth_unstable_by(half, |a, b| {
                 let ((a, i), (b, j)) = (key(a), key(b));
                 a.total_cmp(&b).then(i.cmp(&j))
             });
-            half
+            let (a, b) = own.split_at(half);
+            (half, [sum(a, side), sum(b, side)])
         }
     };
-    let (a, b) = own.split_at(middle);
+    let middle = part.start + middle;
     [
-        Part { start: part.start, end: part.start + middle, cluster: sum(a, side) },
-        Part { start: part.start + middle, end: part.end, cluster: sum(b, side) },
+        Part { start: part.start, end: middle, cluster: clusters[0] },
+        Part { start: middle, end: part.end, cluster: clusters[1] },
     ]
+}
+
+/// Where to split, and what is on each side.
+struct Plane {
+    axis: usize,
+    /// The last bin on the near side.
+    last: usize,
+    clusters: [Cluster; 2],
 }
 
 /// The bin of an item along `axis`.
@@ -147,37 +160,37 @@ fn bin(item: &Item, part: &Part, axis: usize) -> usize {
     ((share * BINS as f32) as usize).min(BINS - 1)
 }
 
-/// The last bin on the near side of the cheapest split, and its axis; `None` where no split leaves
-/// lights on both sides.
-fn best_plane(items: &[Item], part: &Part, side: Vec3) -> Option<(usize, usize)> {
+/// The cheapest split; `None` where none leaves lights on both sides.
+fn best_plane(items: &[Item], part: &Part, side: Vec3) -> Option<Plane> {
     let bins = bins(items, part, side);
     let (extent, spread) = (part.cluster.bounds.extent(), part.cluster.centers.extent());
-    let mut best: Option<(f64, usize, usize)> = None;
+    let mut best: Option<(f64, Plane)> = None;
     for (axis, bins) in bins.iter().enumerate() {
         if spread[axis] <= 0.0 {
             continue;
         }
         // Long boxes are split across: K_r of the paper.
         let regular = f64::from(extent.max_element() / extent[axis].max(f32::MIN_POSITIVE)).min(1e6);
-        let mut from_right = [0.0; BINS];
+        let mut right = [(Cluster::EMPTY, 0.0); BINS];
         let mut cluster = Cluster::EMPTY;
         for i in (1..BINS).rev() {
             cluster = cluster.union(&bins[i]);
-            from_right[i] = if cluster.bounds.is_empty() { -1.0 } else { cluster.cost() };
+            right[i] = (cluster, if cluster.bounds.is_empty() { 0.0 } else { cluster.cost() });
         }
-        let mut cluster = Cluster::EMPTY;
-        for plane in 0..BINS - 1 {
-            cluster = cluster.union(&bins[plane]);
-            if cluster.bounds.is_empty() || from_right[plane + 1] < 0.0 {
+        let mut left = Cluster::EMPTY;
+        for last in 0..BINS - 1 {
+            left = left.union(&bins[last]);
+            let (right, cost_right) = &right[last + 1];
+            if left.bounds.is_empty() || right.bounds.is_empty() {
                 continue;
             }
-            let cost = regular * (cluster.cost() + from_right[plane + 1]);
-            if best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, plane));
+            let cost = regular * (left.cost() + cost_right);
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, Plane { axis, last, clusters: [left, *right] }));
             }
         }
     }
-    best.map(|(_, axis, plane)| (axis, plane))
+    best.map(|(_, plane)| plane)
 }
 
 /// The lights of each bin along each axis.

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
 use crate::light::LightBounds;
-use crate::light::bounds::round_down;
+use crate::light::bounds::{Lobe, round_down};
 use crate::math::{Bounds, Vec3};
 
 /// Sums over some lights that say how widely their normals are spread, without any angle: the mean
@@ -92,24 +92,36 @@ impl Cluster {
     }
 
     /// Bounds of the cluster, whose lights face within `cos_normals` about its axis. Their largest
-    /// intensity together is less than the sum where they face apart: normals uniform in a cone of
-    /// more than a hemisphere, of which R is the length of the mean, give 1 / (4 (1 − R)).
+    /// intensity together is less than the sum where they face apart: for normals uniform in a cone of
+    /// more than a hemisphere, of which R is the length of the mean, it is 1 / (4 (1 − R)) of that.
     pub fn light_bounds(&self, cos_normals: f32) -> LightBounds {
         let r = self.concentration();
         let peak = if r > 0.5 { r } else { 0.25 / (1.0 - r) };
-        let all = self.intensity;
-        let share = if all > 0.0 { (self.isotropic / all).clamp(0.0, 1.0) } else { 0.0 };
-        let intensity = all * (share + (1.0 - share) * peak);
-        let least = if all > 0.0 { f32::MIN_POSITIVE } else { 0.0 };
+        let isotropic = self.isotropic_share();
         LightBounds {
             bounds: self.bounds,
             axis: self.axis(),
             cos_normals,
             cos_emission: self.cos_emission,
-            intensity: (intensity.min(f64::from(f32::MAX)) as f32).max(least),
+            intensity: to_f32(self.intensity * (isotropic + (1.0 - isotropic) * peak)),
             two_sided: self.two_sided,
         }
     }
+
+    /// The same for the importance.
+    pub fn lobe(&self, bounds: &LightBounds) -> Lobe {
+        let (mean_normal, isotropic) = (self.concentration() as f32, self.isotropic_share() as f32);
+        bounds.lobe_of(to_f32(self.intensity), mean_normal, isotropic)
+    }
+
+    fn isotropic_share(&self) -> f64 {
+        if self.intensity > 0.0 { (self.isotropic / self.intensity).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// A positive number stays one.
+fn to_f32(v: f64) -> f32 {
+    if v > 0.0 { (v as f32).clamp(f32::MIN_POSITIVE, f32::MAX) } else { 0.0 }
 }
 
 /// Cosine of the half angle of a cone about `axis` that holds the cone of normals of `light`; `side`

@@ -1,6 +1,5 @@
 //! Eight children side by side: weighed in one loop that compiles to vector instructions.
 
-use crate::light::LightBounds;
 use crate::light::bounds::{Asked, Lobe};
 use crate::math::{Bounds, Vec3};
 
@@ -34,6 +33,8 @@ pub(super) struct Node {
     cos_normals: [f32; WIDTH],
     cos_cone: [f32; WIDTH],
     intensity: [f32; WIDTH],
+    mean_normal: [f32; WIDTH],
+    isotropic: [f32; WIDTH],
     child: [u32; WIDTH],
 }
 
@@ -55,11 +56,12 @@ impl Node {
         cos_normals: [-1.0; WIDTH],
         cos_cone: [-1.0; WIDTH],
         intensity: [0.0; WIDTH],
+        mean_normal: [0.0; WIDTH],
+        isotropic: [0.0; WIDTH],
         child: [u32::MAX; WIDTH],
     };
 
-    pub fn set(&mut self, slot: usize, bounds: &LightBounds, child: Child) {
-        let lobe = bounds.lobe();
+    pub fn set(&mut self, slot: usize, lobe: &Lobe, child: Child) {
         for axis in 0..3 {
             self.center[axis][slot] = lobe.center[axis];
             self.half[axis][slot] = lobe.half[axis];
@@ -68,6 +70,8 @@ impl Node {
         self.cos_normals[slot] = lobe.cos_normals;
         self.cos_cone[slot] = lobe.cos_cone;
         self.intensity[slot] = lobe.intensity;
+        self.mean_normal[slot] = lobe.mean_normal;
+        self.isotropic[slot] = lobe.isotropic;
         self.child[slot] = match child {
             Child::Node(i) => i,
             Child::Light(i) => i | LEAF,
@@ -109,6 +113,8 @@ impl Node {
             cos_normals: self.cos_normals[i],
             cos_cone: self.cos_cone[i],
             intensity: self.intensity[i],
+            mean_normal: self.mean_normal[i],
+            isotropic: self.isotropic[i],
         }
     }
 
