@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use penumbra::math::{DVec2, DVec3, Vec3};
 use penumbra::sampling::warp::*;
-use penumbra::sampling::{AliasTable, Dimension, Distribution2d, Pattern, Sampler};
+use penumbra::sampling::{AliasTable, BilinearImage, Dimension, Distribution2d, Pattern, Sampler};
 
 /// What a warp maps to, as an area-preserving image of the unit square.
 #[derive(Clone, Copy)]
@@ -98,6 +98,17 @@ fn on_plane(w: Vec3) -> Option<DVec2> {
     (w.z > 0.0).then(|| (w * (AT.z / w.z) - AT).truncate() / DVec2::from(HALF))
 }
 
+/// Weights of a bilinear image: zeros, and a texel that holds most of it.
+fn bilinear_weight(x: usize, y: usize) -> f64 {
+    match (x, y) {
+        (5, 2) => 300.0,
+        (9.., 4..) => 0.0,
+        _ => 1.0 + (x * y) as f64,
+    }
+}
+
+static BILINEAR: LazyLock<BilinearImage> = LazyLock::new(|| BilinearImage::new(13, 7, bilinear_weight).unwrap());
+
 const WARPS: &[Warp] = &[
     Warp { name: "disk", domain: Domain::Disk, sample: |u| disk(sample_disk(u)), pdf: |_| PDF_DISK },
     Warp {
@@ -138,6 +149,15 @@ const WARPS: &[Warp] = &[
         },
     },
     Warp { name: "triangle", domain: Domain::Triangle, sample: |u| Vec3::from(sample_triangle(u)), pdf: |_| 1.0 },
+    Warp {
+        name: "bilinear image",
+        domain: Domain::Square,
+        sample: |u| {
+            let p = BILINEAR.sample(u.map(|u| f64::from(u) + 2.0_f64.powi(-25)), bilinear_weight).p;
+            disk(p.map(|p| (p as f32).min(1.0 - f32::EPSILON)))
+        },
+        pdf: |p| BILINEAR.pdf([p.x.into(), p.y.into()], bilinear_weight) as f32,
+    },
     Warp { name: "image", domain: Domain::Square, sample: |u| disk(IMAGE.sample(u).p), pdf: |p| IMAGE.pdf([p.x, p.y]) },
 ];
 

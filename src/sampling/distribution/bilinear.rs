@@ -23,7 +23,8 @@ pub struct BilinearImage {
 pub struct BilinearSample {
     /// Point in [0, 1]²: x along the row, y down the rows.
     pub p: [f64; 2],
-    /// Density over the unit square, above 0; its mean over the square is 1.
+    /// Density over the unit square, whose mean over the square is 1; 0 only where a number of exactly 0
+    /// falls on an edge of no weight.
     pub pdf: f64,
 }
 
@@ -112,4 +113,102 @@ fn sample_linear(u: f64, a: f64, b: f64) -> f64 {
     let (a, b) = (a / largest, b / largest);
     let divisor = a + lerp(a * a, b * b, u).sqrt();
     if divisor > 0.0 { (u * (a + b) / divisor).min(1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Exact for a bilinear density: two Gauss points each way in every patch.
+    fn integral(d: &BilinearImage, weight: impl Fn(usize, usize) -> f64 + Copy) -> f64 {
+        let nodes = [0.5 - 0.5 / 3.0_f64.sqrt(), 0.5 + 0.5 / 3.0_f64.sqrt()];
+        let mut sum = 0.0;
+        for y in 0..=d.height {
+            let high = patch_height(d.height, y);
+            for x in 0..d.width {
+                for s in nodes {
+                    for t in nodes {
+                        let p = [((x as f64 + 0.5 + s) / d.width as f64).fract(), d.row_at(y) + t * high];
+                        sum += 0.25 * d.pdf(p, weight) * high / d.width as f64;
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    const SIZES: [[usize; 2]; 7] = [[1, 1], [1, 5], [5, 1], [2, 2], [17, 9], [64, 33], [200, 3]];
+
+    #[test]
+    fn integrates_to_one_and_follows_the_weights() {
+        let weights: [fn(usize, usize) -> f64; 4] = [
+            |_, _| 3.0,
+            |x, y| (1 + x * y) as f64,
+            |x, y| if (x + y) % 3 == 0 { 1.0 + x as f64 } else { 0.0 },
+            |x, y| if (x, y) == (0, 0) { 1e8 } else { 1e-3 },
+        ];
+        for [w, h] in SIZES {
+            for (i, weight) in weights.into_iter().enumerate() {
+                let d = BilinearImage::new(w, h, weight).unwrap();
+                assert!((integral(&d, weight) - 1.0).abs() < 1e-12, "{w} × {h}, {i}");
+                // The integral of the weights by the trapezoids that the patches are.
+                let total: f64 = (0..h)
+                    .flat_map(|y| (0..w).map(move |x| (x, y)))
+                    .map(|(x, y)| {
+                        let height = 0.5 * (patch_height(h, y) + patch_height(h, y + 1));
+                        weight(x, y) * height / w as f64
+                    })
+                    .sum();
+                for y in 0..h {
+                    for x in 0..w {
+                        let p = [(x as f64 + 0.5) / w as f64, (y as f64 + 0.5) / h as f64];
+                        let (pdf, exact) = (d.pdf(p, weight), weight(x, y) / total);
+                        // Patches have whole units of 2⁻²⁴, at least one in their row and column.
+                        let unit = 3.0 * (w * (h + 1)) as f64 / 16_777_216.0 * (1.0 + exact);
+                        let near = (pdf - exact).abs() <= 2e-3 * exact + unit * 100.0;
+                        assert!(
+                            near && (exact == 0.0) == (pdf < 1e-9 * exact.max(1e-3)),
+                            "{w} × {h}, {i}: {pdf} {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sampled_density_is_the_density_there() {
+        for [w, h] in SIZES {
+            for weight in [|x, y| ((x * 7 + y * 3) % 5) as f64, |x, y| if x + y == 0 { 1e8 } else { 1e-3 }] {
+                let Some(d) = BilinearImage::new(w, h, weight) else {
+                    assert_eq!([w, h], [1, 1]);
+                    continue;
+                };
+                for i in 0..20_000 {
+                    let u = [(i as f64 * 0.618_033_988_7 + 1e-9).fract(), (i as f64 * 0.754_877_666_2 + 1e-9).fract()];
+                    let s = d.sample(u, weight);
+                    assert!(s.pdf > 0.0 && s.p.iter().all(|p| (0.0..=1.0).contains(p)), "{w} × {h}: {s:?}");
+                    let asked = d.pdf(s.p, weight);
+                    // Next to an edge of no weight the rounding of the place is a part of the density.
+                    let step = 1e-12 * s.pdf.max(d.density(1.0, [[1.0; 2]; 2], [0.5; 2], 0));
+                    assert!((asked - s.pdf).abs() <= 1e-9 * s.pdf + step, "{w} × {h}: {s:?} {asked}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn random_numbers_of_0_and_nearly_1_stay_inside() {
+        let weight = |x: usize, _| if x == 1 { 1.0 } else { 0.0 };
+        let d = BilinearImage::new(4, 2, weight).unwrap();
+        for u in [0.0, 1e-300, 0.5, 1.0 - 1e-16, 1.0] {
+            for v in [0.0, 1e-300, 0.5, 1.0 - 1e-16, 1.0] {
+                let s = d.sample([u, v], weight);
+                assert!(s.pdf >= 0.0 && s.pdf.is_finite() && (0.125..=0.625).contains(&s.p[0]), "{s:?}");
+                assert!((0.0..=1.0).contains(&s.p[1]), "{s:?}");
+            }
+        }
+        assert!(BilinearImage::new(3, 3, |_, _| 0.0).is_none());
+        assert!(BilinearImage::new(0, 3, |_, _| 1.0).is_none());
+    }
 }
