@@ -1,11 +1,11 @@
-"""Builds the shipped scenes: `python scenes/make.py [still_life|interior|field|all]` (Python 3.11, bpy 5.0, numpy)."""
+"""Builds the shipped scenes: `python scenes/make.py [still_life|interior|field|lamps|all]` (Python 3.11, bpy 5.0, numpy)."""
 import importlib
 import pathlib
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCENES = ("still_life", "interior", "field")
+SCENES = ("still_life", "interior", "field", "lamps")
 
 
 def main(args):

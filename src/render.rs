@@ -72,7 +72,7 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
     })?;
     let [width, height] = scene.size;
     // Asked for beforehand, since what runs out in the middle aborts the process.
-    let bytes = Film::bytes_needed(width, height, &settings.passes);
+    let bytes = Film::bytes_needed(width, height, &scene.passes);
     let there = usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok());
     if !there {
         return Err(Error::Unsupported {
@@ -80,7 +80,7 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
             what: format!("a picture of {width}x{height} pixels needs {} MiB, which are not there", bytes >> 20),
         });
     }
-    let mut film = Film::new(width, height, settings.passes.clone());
+    let mut film = Film::new(width, height, scene.passes.clone());
     let job = Job::new(scene, settings, observer);
     pool.install(|| {
         if scene.effects.first_hit {

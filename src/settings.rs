@@ -19,6 +19,17 @@ pub enum Integrator {
     Ao,
 }
 
+/// How one of many lights is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSelection {
+    /// By what it may send to the point that is lit.
+    Tree,
+    /// By its power.
+    Power,
+    /// All alike.
+    Uniform,
+}
+
 /// Which effects are simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EffectsMode {
@@ -166,6 +177,8 @@ macro_rules! choice {
 }
 
 choice!(Integrator, INTEGRATORS, "path" => Integrator::Path, "direct" => Integrator::Direct, "ao" => Integrator::Ao);
+choice!(LightSelection, LIGHT_SELECTIONS,
+    "tree" => LightSelection::Tree, "power" => LightSelection::Power, "uniform" => LightSelection::Uniform);
 choice!(EffectsMode, EFFECTS, "auto" => EffectsMode::Auto, "all" => EffectsMode::All);
 
 impl Value for Pattern {
@@ -233,7 +246,7 @@ settings! {
     time: Option<f64> = "", Kind::Float { min: 0.0, max: 1e9 }, "SECONDS",
         "Stop after so many seconds of rendering, whatever the samples; alone, the only rule";
     passes: PassSet = "combined", Kind::Text, "LIST",
-        "Passes to write, separated by commas, or all";
+        "Passes to write, separated by commas, or all; those of light groups as shadow_NAME, or shadow_* for each";
     integrator: Integrator = "path", Kind::Choice(INTEGRATORS), "NAME",
         "Light transport: path, direct (nothing bounces) or ao (occlusion alone)";
     max_bounces: u32 = "12", Kind::Int { min: 0, max: 1 << 20 }, "N",
@@ -244,6 +257,8 @@ settings! {
         "Ambient occlusion rays per sample";
     light_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
         "Light samples at the first hit per sample";
+    light_selection: LightSelection = "tree", Kind::Choice(LIGHT_SELECTIONS), "NAME",
+        "How one of many lights is chosen: tree (by what it may send to a point), or, with more noise, power or uniform";
     sampler: Pattern = "sobol", Kind::Text, "NAME",
         "Point set that the random decisions are drawn from";
     filter: Filter = "blackman_harris:1.5", Kind::Text, "NAME[:WIDTH]",

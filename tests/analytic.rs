@@ -35,9 +35,13 @@ fn inside_a_closed_glowing_sphere_everything_is_le_over_one_minus_albedo() {
         let material = emitter(&mut builder, 1.0 - albedo, albedo);
         builder.sphere(16, false, material, DAffine3::IDENTITY);
         builder.look([0.0, -0.5, 0.0], DOWN, 0.4);
-        let settings = Settings { max_bounces: 200, ..settings("combined", 256) };
-        let picture = picture(&builder.desc, 8, &settings);
-        close(&format!("albedo {albedo}"), mean(&picture, "Combined", 0), 1.0, 4e-3);
+        let whole = Settings { max_bounces: 200, ..settings("combined", 1024) };
+        close(&format!("albedo {albedo}"), mean(&picture(&builder.desc, 8, &whole), "Combined", 0), 1.0, 4e-3);
+        // Of which this part comes straight, and none of it from the triangle that the point lies on.
+        let direct = Settings { max_bounces: 0, ..settings("diffuse_direct", 4096) };
+        let value = mean(&picture(&builder.desc, 8, &direct), "Diffuse Direct", 0);
+        let expected = if albedo > 0.0 { 1.0 - albedo } else { 0.0 };
+        close(&format!("albedo {albedo}, direct"), value, expected, 3e-4);
     }
 }
 

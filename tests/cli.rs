@@ -78,7 +78,7 @@ fn renders_every_pass_to_parts_named_as_blender_names_them() {
     assert!(stderr(&output).contains("no light in the scene"), "{}", stderr(&output));
     let picture = exr::read(&out).unwrap();
     assert_eq!((picture.width, picture.height), (32, 24));
-    for pass in penumbra::film::PASSES {
+    for pass in penumbra::film::PASSES.iter().filter(|pass| pass.group_prefix().is_none()) {
         let found = picture.layers.iter().any(|layer| layer.name.starts_with(&format!("ViewLayer.{}", pass.layer)));
         assert!(found, "{} is missing", pass.layer);
     }
@@ -87,6 +87,73 @@ fn renders_every_pass_to_parts_named_as_blender_names_them() {
     assert!((depth.pixel(32, 16, 12)[0] - 4.0).abs() < 1e-4);
     assert_eq!(&std::fs::read(&png).unwrap()[..4], b"\x89PNG");
     assert_eq!(folder.names(), ["out.exr", "out.png", "tri.glb"]);
+}
+
+/// The triangle, lit by a lamp of the group "key" and one of "fill.001".
+fn two_groups() -> Glb {
+    let mut glb = triangle();
+    for (name, group, place) in [("Key", "key", [1, 1, 2]), ("Fill", "fill.001", [-1, 0, 3])] {
+        let penumbra = json!({"light": {"type": "point", "intensity": 4}, "light_group": group});
+        glb.push("nodes", json!({"name": name, "translation": place, "extras": {"penumbra": penumbra}}));
+    }
+    glb
+}
+
+#[test]
+fn light_groups_are_passes_that_sum_to_combined() {
+    let folder = Folder::new();
+    let scene = folder.write("two.glb", two_groups().bytes());
+    let out = folder.path("out.exr");
+    let render = |passes: &str| {
+        let args = ["render", text(&scene), "-o", text(&out), "--size", "32x24", "--spp", "4", "--progress", "none"];
+        penumbra(&[&args[..], &["--passes", passes]].concat())
+    };
+    let output = render("combined,combined_*,shadow_key");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let picture = exr::read(&out).unwrap();
+    assert_eq!(picture.layers.len(), 4);
+    let layer = |name: &str| picture.layer(name).unwrap();
+    let (key, fill, all) = (layer("Combined_key"), layer("Combined_fill_001"), layer("Combined"));
+    for (x, y) in (0..24).flat_map(|y| (0..32).map(move |x| (x, y))) {
+        for c in 0..3 {
+            let value = |layer: &penumbra::film::Layer| layer.pixel(32, x, y)[c];
+            assert!((value(key) + value(fill) - value(all)).abs() <= 1e-6 * value(all).abs(), "({x}, {y})");
+        }
+    }
+    let lit = |layer: &penumbra::film::Layer| layer.pixel(32, 16, 12)[0];
+    assert!(lit(key) > 0.0 && lit(fill) > 0.0 && lit(key) != lit(fill));
+    assert_eq!(lit(layer("Shadow_key")), 1.0);
+
+    let output = render("shadow_kye");
+    assert_eq!(output.status.code(), Some(1));
+    let message = "there is no light group 'kye'; the scene has: fill.001, key";
+    assert!(stderr(&output).contains(message), "{}", stderr(&output));
+}
+
+#[test]
+fn info_says_all_of_a_light_that_is_not_the_default() {
+    let docs = include_str!("../docs/gltf.md");
+    let example = docs.split("```json").nth(1).unwrap().split("```").next().unwrap();
+    let folder = Folder::new();
+    let scene = folder.write("example.gltf", example);
+    let output = penumbra(&["info", text(&scene)]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let page = String::from_utf8(output.stdout).unwrap();
+    for line in [
+        r#"rectangle light "Key": (53.0516, 42.4413, 31.8310) W/(m2 sr), 1.2 x 0.6 m, spread 114.5916 degrees, group "key", lights all but "Backdrop""#,
+        r#"sphere light "Rim": (405.2847, 405.2847, 405.2847) W/(m2 sr), radius 0.05 m, cone 34.3775 degrees, blend 0.3, decay linear, group "fill", seen by camera"#,
+        r#"point light "Panel": (9.0000, 9.0000, 9.0000) W/sr, group "fill", casts no shadow"#,
+        r#"dome light "Sky": (0.2000, 0.2000, 0.2000) W/(m2 sr), group "sky""#,
+        "light groups: fill, key, sky",
+    ] {
+        assert!(page.lines().any(|l| l.trim() == line), "{line}\nis not in\n{page}");
+    }
+    let output = penumbra(&["info", text(&scene), "--json"]);
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(info["light_groups"], json!(["fill", "key", "sky"]));
+    let key = &info["lights"][0];
+    assert_eq!((&key["size_m"], &key["receivers"]), (&json!([1.2, 0.6]), &json!({"exclude": ["Backdrop"]})));
+    assert_eq!(info["lights"][1]["visibility"], json!({"camera": true}));
 }
 
 #[test]

@@ -54,7 +54,8 @@ fn lit(kind: Kind, roughness: f64, links: LightLinks, visibility: Visibility) ->
     match kind {
         Kind::Lamp(kind) => {
             // Shines straight down.
-            let transform = DAffine3::from_translation(DVec3::new(0.3, 2.0, 0.0)) * DAffine3::from_rotation_x(-0.5 * PI);
+            let transform =
+                DAffine3::from_translation(DVec3::new(0.3, 2.0, 0.0)) * DAffine3::from_rotation_x(-0.5 * PI);
             builder.light(kind, transform);
             let light = builder.desc.lights.last_mut().unwrap();
             (light.links, light.visibility) = (links, visibility);
@@ -238,8 +239,7 @@ fn groups_sum_to_the_picture_and_have_shadows_of_their_own() {
     }
     builder.quad([-1.0, 1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0], ground);
     builder.look([0.0; 3], [0.1, -0.5, 0.1], 1.0);
-    let settings = settings("combined,combined_*,shadow_key,shadow_fill,shadow", 64);
-    let both = picture(&builder.desc, 16, &settings);
+    let both = picture(&builder.desc, 16, &settings("combined,combined_*,shadow_key,shadow_fill,shadow", 64));
     let layer = |name: &str| both.layer(name).unwrap_or_else(|| panic!("{name}")).data.clone();
     let (combined, key, fill) = (layer("Combined"), layer("Combined_key"), layer("Combined_fill"));
     for pixel in 0..16 * 16 {
@@ -252,7 +252,7 @@ fn groups_sum_to_the_picture_and_have_shadows_of_their_own() {
     for group in ["key", "fill"] {
         let mut alone = builder.clone();
         alone.desc.lights.retain(|light| light.links.group.as_deref() == Some(group));
-        let alone = picture(&alone.desc, 16, &settings);
+        let alone = picture(&alone.desc, 16, &settings("shadow", 64));
         let expected = mean(&alone, "Shadow", 0);
         close(group, mean(&both, &format!("Shadow_{group}"), 0), expected, 0.02);
     }

@@ -1,7 +1,9 @@
 //! `penumbra info`: what was read from a scene.
 
+mod lights;
+
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use penumbra::desc::{ConeDesc, LightKind, ProjectionDesc, SceneDesc};
+use penumbra::desc::{ProjectionDesc, SceneDesc};
 use penumbra::error::Warnings;
 use serde_json::{Value, json};
 
@@ -83,29 +85,8 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
             }
             value
         }).collect::<Vec<_>>(),
-        "lights": scene.lights.iter().map(|light| {
-            let (kind, value, unit) = match light.kind {
-                LightKind::Point { intensity } if light.shaping.cone.is_some() => ("spot", intensity, "W/sr"),
-                LightKind::Point { intensity } => ("point", intensity, "W/sr"),
-                LightKind::Distant { irradiance, .. } => ("distant", irradiance, "W/m2"),
-                LightKind::Sphere { radiance, .. } => ("sphere", radiance, "W/(m2 sr)"),
-                LightKind::Rect { radiance, .. } => ("rectangle", radiance, "W/(m2 sr)"),
-                LightKind::Disk { radiance, .. } => ("disk", radiance, "W/(m2 sr)"),
-                LightKind::Cylinder { radiance, .. } => ("cylinder", radiance, "W/(m2 sr)"),
-                LightKind::Dome { radiance, .. } => ("dome", radiance, "W/(m2 sr)"),
-            };
-            let mut described = json!({ "name": &*light.name, "kind": kind, "value": value, "unit": unit });
-            if let Some(ConeDesc::Ramp { inner, outer }) = light.shaping.cone {
-                described["cone_deg"] = json!([inner.to_degrees(), outer.to_degrees()]);
-            }
-            if let LightKind::Distant { angle, .. } = light.kind {
-                described["angle_deg"] = json!(angle.to_degrees());
-            }
-            if light.decay.range.is_finite() {
-                described["range_m"] = json!(light.decay.range);
-            }
-            described
-        }).collect::<Vec<_>>(),
+        "lights": scene.lights.iter().map(|light| lights::describe(light, scene)).collect::<Vec<_>>(),
+        "light_groups": lights::groups(scene),
         "emissive_materials": scene.materials.iter()
             .filter(|m| !m.unlit && m.emission_strength > 0.0 && m.emission.factor.iter().any(|&c| c > 0.0))
             .map(|m| json!({
@@ -157,13 +138,10 @@ fn page(info: &Value) -> String {
         line(format!("  camera {}{node}: {lens}", camera["name"]));
     }
     for light in list("lights") {
-        line(format!(
-            "  {} light {}: {} {}",
-            light["kind"].as_str().unwrap_or_default(),
-            light["name"],
-            numbers(&light["value"]),
-            light["unit"].as_str().unwrap_or_default()
-        ));
+        line(format!("  {}", lights::line(&light)));
+    }
+    if !list("light_groups").is_empty() {
+        line(format!("  light groups: {}", joined(&info["light_groups"])));
     }
     for material in list("emissive_materials") {
         line(format!(
@@ -174,15 +152,18 @@ fn page(info: &Value) -> String {
         ));
     }
     if !list("variants").is_empty() {
-        line(format!(
-            "  variants: {}",
-            list("variants").iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ")
-        ));
+        line(format!("  variants: {}", joined(&info["variants"])));
     }
     for warning in list("warnings") {
         line(format!("  warning: {}", warning.as_str().unwrap_or_default()));
     }
     page
+}
+
+/// A list of texts in one line.
+fn joined(value: &Value) -> String {
+    let names = value.as_array().map(|list| list.iter().filter_map(Value::as_str).collect::<Vec<_>>());
+    names.unwrap_or_default().join(", ")
 }
 
 fn numbers(value: &Value) -> String {

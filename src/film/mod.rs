@@ -7,6 +7,7 @@
 pub mod cryptomatte;
 mod filter;
 mod pass;
+mod pass_set;
 mod picture;
 mod quantity;
 mod sample;
@@ -14,7 +15,8 @@ mod store;
 mod tile;
 
 pub use filter::{FILTERS, Filter, FilterRow};
-pub use pass::{PASSES, Pass, PassSet, Storage};
+pub use pass::{GROUP, PASSES, Pass, Storage};
+pub use pass_set::{Chosen, PassSet};
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};
 pub use sample::{CryptoSample, FirstHit, GroupSample, PixelSample, Split};

@@ -3,13 +3,13 @@
 //! A pass is not a sum but a function of sums (a ratio of two, say), so film and passes are kept apart:
 //! the film adds up the quantities that the chosen passes name, each once, and nothing else.
 
-use super::sample::PixelSample;
+use super::sample::{GroupSample, PixelSample};
 use crate::math::{Rgb, Vec3};
 
 /// One vector-valued sum over the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
-#[allow(missing_docs)] // Each is the field of `PixelSample` of its name.
+#[allow(missing_docs)] // Each is the field of its name of `PixelSample`, or of `GroupSample`, per group.
 pub enum Quantity {
     Combined,
     DiffuseDirect,
@@ -27,6 +27,11 @@ pub enum Quantity {
     Unshadowed,
     IrradianceShadowed,
     IrradianceUnshadowed,
+    GroupCombined,
+    GroupLit,
+    GroupUnshadowed,
+    GroupIrradianceShadowed,
+    GroupIrradianceUnshadowed,
     Normal,
     Uv,
     DenoisingNormal,
@@ -44,7 +49,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of the film's memory.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 30] = [
         Self::Combined,
         Self::DiffuseDirect,
         Self::DiffuseIndirect,
@@ -61,6 +66,11 @@ impl Quantity {
         Self::Unshadowed,
         Self::IrradianceShadowed,
         Self::IrradianceUnshadowed,
+        Self::GroupCombined,
+        Self::GroupLit,
+        Self::GroupUnshadowed,
+        Self::GroupIrradianceShadowed,
+        Self::GroupIrradianceUnshadowed,
         Self::Normal,
         Self::Uv,
         Self::DenoisingNormal,
@@ -72,13 +82,37 @@ impl Quantity {
         Self::FirstHit,
     ];
 
-    /// How many numbers the film adds up for it; 0 for those that are kept in another way.
+    /// True where the film keeps it for each light group, not once.
+    pub const fn is_of_group(self) -> bool {
+        matches!(
+            self,
+            Self::GroupCombined
+                | Self::GroupLit
+                | Self::GroupUnshadowed
+                | Self::GroupIrradianceShadowed
+                | Self::GroupIrradianceUnshadowed
+        )
+    }
+
+    /// How many numbers the film adds up for it, for one group; 0 for those that are kept in another way.
     pub const fn width(self) -> usize {
         match self {
             Self::Combined => 4,
             Self::DenoisingDepth => 1,
             Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => 0,
             _ => 3,
+        }
+    }
+
+    /// The values of a light group, for a quantity that groups have.
+    pub(super) fn read_group(self, s: &GroupSample) -> Rgb {
+        match self {
+            Self::GroupCombined => s.combined,
+            Self::GroupLit => s.lit,
+            Self::GroupUnshadowed => s.unshadowed,
+            Self::GroupIrradianceShadowed => s.irradiance_shadowed,
+            Self::GroupIrradianceUnshadowed => s.irradiance_unshadowed,
+            _ => Rgb::BLACK,
         }
     }
 
@@ -106,7 +140,7 @@ impl Quantity {
             Self::DenoisingNormal => vector(s.denoising_normal),
             Self::DenoisingAlbedo => color(s.denoising_albedo),
             Self::DenoisingDepth => [s.denoising_depth, 0.0, 0.0, 0.0],
-            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => [0.0; 4],
+            _ => [0.0; 4],
         }
     }
 }
@@ -132,6 +166,11 @@ impl Quantities {
     /// True where `q` is in it.
     pub const fn contains(self, q: Quantity) -> bool {
         self.0 & (1 << q as u32) != 0
+    }
+
+    /// Those of it that groups have (`true`), or that they do not have.
+    pub(super) fn of_groups(self, of_groups: bool) -> Self {
+        self.iter().filter(|q| q.is_of_group() == of_groups).fold(Self::default(), Self::with)
     }
 
     /// Its members, in the order of [`Quantity::ALL`].

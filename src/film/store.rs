@@ -4,8 +4,11 @@
 //! expected value 1. Dividing by N and not by `Σ w` keeps the estimate unbiased for filters with
 //! negative lobes too, whose `Σ w` can come near 0. Sums are `f64`.
 
+use std::sync::Arc;
+
 use super::cryptomatte::DEPTH;
-use super::pass::{Develop, Pass, PassSet};
+use super::pass::Develop;
+use super::pass_set::{Chosen, PassSet};
 use super::picture::{Layer, Picture};
 use super::tile::{Layout, NonFinite, Tile};
 
@@ -22,11 +25,12 @@ impl Film {
     /// Side of a tile in pixels.
     pub const TILE: u32 = 16;
 
-    /// An empty film that can develop `passes`.
+    /// An empty film that can develop `passes`; of light groups those that they were resolved with.
     pub fn new(width: u32, height: u32, passes: PassSet) -> Self {
-        let layout = Layout::of(&passes);
+        let layout = Arc::new(Layout::of(&passes));
         let starts = |size: u32| (0..size).step_by(Self::TILE as usize);
-        let tile = |x: u32, y: u32| Tile::new(x, y, Self::TILE.min(width - x), Self::TILE.min(height - y), layout);
+        let tile =
+            |x: u32, y: u32| Tile::new(x, y, Self::TILE.min(width - x), Self::TILE.min(height - y), layout.clone());
         let tiles = starts(height).flat_map(|y| starts(width).map(move |x| (x, y))).map(|(x, y)| tile(x, y)).collect();
         Self { width, height, passes, tiles }
     }
@@ -84,13 +88,14 @@ impl Film {
 
     /// The picture so far. Pixels without a sample are 0 (a shadow of 1, the background's depth).
     pub fn develop(&self) -> Picture {
-        let layers = self.passes.iter().flat_map(|pass| self.develop_pass(pass)).collect();
+        let layers = self.passes.iter().flat_map(|chosen| self.develop_pass(&chosen)).collect();
         Picture { width: self.width, height: self.height, layers }
     }
 
-    fn develop_pass(&self, pass: &Pass) -> Vec<Layer> {
+    fn develop_pass(&self, chosen: &Chosen<'_>) -> Vec<Layer> {
+        let pass = chosen.pass;
         let names = match pass.develop {
-            Develop::Pixel(_) => vec![pass.layer.to_owned()],
+            Develop::Pixel(_) => vec![chosen.layer()],
             Develop::Cryptomatte(_) => (0..DEPTH / 2).map(|i| format!("{}{i:02}", pass.layer)).collect(),
         };
         let n = pass.channels.len();
@@ -103,7 +108,7 @@ impl Film {
                 let at = (y as usize * self.width as usize + x as usize) * n;
                 match pass.develop {
                     Develop::Pixel(value) => {
-                        let value = value(&tile.sums(x, y)).map(to_f32);
+                        let value = value(&tile.sums(x, y, chosen.group_index())).map(to_f32);
                         layers[0].data[at..at + n].copy_from_slice(&value[..n]);
                     }
                     Develop::Cryptomatte(kind) => {
@@ -128,7 +133,7 @@ fn to_f32(value: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{CryptoSample, FirstHit, PixelSample, SampleId, Split, cryptomatte};
+    use crate::film::{CryptoSample, FirstHit, GroupSample, PixelSample, SampleId, Split, cryptomatte};
     use crate::math::{Rgb, Vec3};
 
     fn id(index: u32) -> SampleId {
@@ -141,7 +146,13 @@ mod tests {
     }
 
     fn one_pixel(passes: &str, samples: &[PixelSample]) -> Picture {
-        let mut film = Film::new(1, 1, PassSet::parse(passes).expect("known passes"));
+        of_groups(passes, &[], samples)
+    }
+
+    fn of_groups(passes: &str, groups: &[&str], samples: &[PixelSample]) -> Picture {
+        let groups: Vec<Arc<str>> = groups.iter().map(|&name| name.into()).collect();
+        let passes = PassSet::parse(passes).expect("known passes").resolve(&groups).expect("known groups");
+        let mut film = Film::new(1, 1, passes);
         for (i, sample) in samples.iter().enumerate() {
             film.tiles_mut()[0].add(id(i as u32), 1.0, sample);
         }
@@ -215,6 +226,71 @@ mod tests {
         assert_eq!(value(&one_pixel("shadow", &[]), "Shadow"), [1.0; 3]);
     }
 
+    /// Light of two groups and of a lamp in neither, over three samples.
+    fn two_groups() -> Vec<PixelSample> {
+        let group = |lit: f32, unshadowed: f32, more: f32| GroupSample {
+            combined: Rgb::splat(lit + more),
+            lit: Rgb::splat(lit),
+            unshadowed: Rgb::splat(unshadowed),
+            ..GroupSample::default()
+        };
+        let rows = [
+            [group(4.0, 4.0, 0.5), group(1.0, 2.0, 0.25)],
+            [group(0.0, 1.0, 0.0), group(0.0, 2.0, 0.0)],
+            [group(1.0, 3.0, 2.0), group(0.5, 4.0, 1.0)],
+        ];
+        let sample = |groups: [GroupSample; 2]| PixelSample {
+            combined: groups[0].combined + groups[1].combined,
+            ..PixelSample { groups: groups.into(), ..PixelSample::default() }
+        };
+        rows.map(sample).into()
+    }
+
+    #[test]
+    fn the_shadow_of_a_group_is_the_ratio_of_its_means() {
+        let picture = of_groups("shadow_*", &["fill", "key"], &two_groups());
+        assert_eq!(value(&picture, "Shadow_fill"), [0.625; 3]);
+        assert_eq!(value(&picture, "Shadow_key"), [1.5 / 8.0; 3]);
+        assert_eq!(picture.layers.len(), 2);
+        let bare =
+            |lit, all| GroupSample { irradiance_shadowed: lit, irradiance_unshadowed: all, ..GroupSample::default() };
+        let [red, white] = [Rgb::new(1.0, 0.0, 0.0), Rgb::new(4.0, 2.0, 0.0)];
+        let groups = [bare(Rgb::splat(3.0), Rgb::splat(3.0)), bare(red, white)].into();
+        let picture = of_groups("shadow_*", &["fill", "key"], &[PixelSample { groups, ..PixelSample::default() }]);
+        assert_eq!(value(&picture, "Shadow_key"), [0.25, 0.0, 1.0]);
+        assert_eq!(value(&picture, "Shadow_fill"), [1.0; 3]);
+    }
+
+    #[test]
+    fn groups_sum_to_combined_and_one_alone_is_the_same() {
+        let picture = of_groups("all", &["fill", "key"], &two_groups());
+        let red = |layer: &str| value(&picture, layer)[0];
+        assert_eq!(red("Combined_fill") + red("Combined_key"), red("Combined"));
+        assert_eq!(red("Combined_fill"), 7.5 / 3.0);
+        // What is asked for alone lies elsewhere in memory.
+        let mut swapped = two_groups();
+        swapped.iter_mut().for_each(|sample| sample.groups = Box::new([sample.groups[1]]));
+        let alone = of_groups("combined_key,shadow_key", &["key"], &swapped);
+        for layer in ["Combined_key", "Shadow_key"] {
+            assert_eq!(value(&alone, layer), value(&picture, layer));
+        }
+    }
+
+    #[test]
+    fn groups_are_held_to_be_finite_where_they_are_asked_for() {
+        let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
+        let kept = |passes: &str, bad: GroupSample| {
+            let passes = PassSet::parse(passes).expect("known").resolve(&groups).expect("there");
+            let groups = vec![bad; passes.groups().len()].into();
+            let mut film = Film::new(1, 1, passes);
+            film.tiles_mut()[0].add(id(0), 1.0, &PixelSample { groups, ..PixelSample::default() })
+        };
+        let nan = Rgb::new(0.0, 0.0, f32::NAN);
+        assert!(!kept("combined_key", GroupSample { combined: nan, ..GroupSample::default() }));
+        assert!(!kept("combined,shadow_*", GroupSample { unshadowed: nan, ..GroupSample::default() }));
+        assert!(kept("combined,shadow_*", GroupSample { combined: nan, ..GroupSample::default() }));
+    }
+
     #[test]
     fn light_passes_recombine() {
         let split = |a, b, c| Split { diffuse: Rgb::splat(a), glossy: Rgb::splat(b), transmission: Rgb::splat(c) };
@@ -242,10 +318,10 @@ mod tests {
     fn non_finite_samples_are_dropped_and_named() {
         let mut film = Film::new(20, 20, PassSet::default());
         let good = PixelSample { combined: Rgb::splat(2.0), alpha: 1.0, ..PixelSample::default() };
-        let bad = PixelSample { combined: Rgb::new(0.0, f32::NAN, 0.0), ..good };
-        for (x, y, index, sample) in [(18, 3, 7, bad), (2, 9, 4, bad), (1, 9, 4, bad), (1, 9, 5, good)] {
+        let bad = PixelSample { combined: Rgb::new(0.0, f32::NAN, 0.0), ..good.clone() };
+        for (x, y, index, sample) in [(18, 3, 7, &bad), (2, 9, 4, &bad), (1, 9, 4, &bad), (1, 9, 5, &good)] {
             let tile = film.tiles_mut().iter_mut().find(|tile| tile.pixels().any(|p| p == (x, y)));
-            let kept = tile.expect("in the film").add(SampleId { x, y, index }, 1.0, &sample);
+            let kept = tile.expect("in the film").add(SampleId { x, y, index }, 1.0, sample);
             assert_eq!(kept, sample.combined.is_finite());
         }
         assert_eq!(film.non_finite(), NonFinite { count: 3, first: Some(SampleId { x: 1, y: 9, index: 4 }) });
@@ -270,6 +346,13 @@ mod tests {
         assert!((pixels * (4 * 8 + 4)..pixels * (4 * 8 + 8)).contains(&bytes("combined")), "{}", bytes("combined"));
         assert!(bytes("ao") < bytes("combined"));
         assert!(bytes("all") > pixels * 62 * 8);
+        let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
+        let stride = |list: &str| {
+            let passes = PassSet::parse(list).expect("known").resolve(&groups).expect("there");
+            (Film::bytes_needed(1, 1, &passes) - 4) / 8
+        };
+        assert_eq!([stride("combined"), stride("combined,combined_key")], [4, 7]);
+        assert_eq!([stride("combined_key,shadow_fill"), stride("combined_*,shadow_*")], [15, 30]);
     }
 
     #[test]

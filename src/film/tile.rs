@@ -1,11 +1,14 @@
 //! A square of pixels and the sums behind them, owned by one thread at a time.
 
 use std::array;
+use std::sync::Arc;
 
 use super::cryptomatte::{CryptoKind, Matte};
-use super::pass::{Means, PassSet};
+use super::pass::Means;
+use super::pass_set::PassSet;
 use super::quantity::{Quantities, Quantity};
 use super::sample::{FirstHit, PixelSample};
+use crate::math::Rgb;
 
 /// Names one sample of one pixel, so that it can be replayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,36 +47,61 @@ impl NonFinite {
     }
 }
 
-/// Where each quantity lies among the numbers of a pixel.
+/// Where some quantities lie among the numbers of a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
+pub(super) struct Slots {
     pub(super) quantities: Quantities,
     /// First number of each quantity.
-    pub(super) offsets: [u8; Quantity::ALL.len()],
+    pub(super) offsets: [u32; Quantity::ALL.len()],
+}
+
+/// The numbers of a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// What is kept once.
+    all: Slots,
+    /// What is kept of each light group, by its index.
+    groups: Vec<Slots>,
     /// Numbers per pixel.
     pub(super) stride: usize,
 }
 
-/// Numbers per pixel where everything is asked for.
+/// Most numbers per pixel but for those of groups.
 const MAX_STRIDE: usize = {
     let (mut stride, mut i) = (0, 0);
     while i < Quantity::ALL.len() {
-        stride += Quantity::ALL[i].width();
+        if !Quantity::ALL[i].is_of_group() {
+            stride += Quantity::ALL[i].width();
+        }
         i += 1;
     }
     stride
 };
 
+impl Slots {
+    /// `quantities` from number `stride` on, which moves to the first number after them.
+    fn after(stride: &mut usize, quantities: Quantities) -> Self {
+        let mut offsets = [0; Quantity::ALL.len()];
+        for q in quantities.iter() {
+            offsets[q as usize] = *stride as u32;
+            *stride += q.width();
+        }
+        Self { quantities, offsets }
+    }
+
+    /// Each quantity and its first number.
+    fn iter(&self) -> impl Iterator<Item = (Quantity, usize)> {
+        self.quantities.iter().map(|q| (q, self.offsets[q as usize] as usize))
+    }
+}
+
 impl Layout {
     pub(super) fn of(passes: &PassSet) -> Self {
-        let quantities = passes.quantities();
-        let mut offsets = [0; Quantity::ALL.len()];
         let mut stride = 0;
-        for q in quantities.iter() {
-            offsets[q as usize] = stride as u8;
-            stride += q.width();
-        }
-        Self { quantities, offsets, stride }
+        let all = Slots::after(&mut stride, passes.quantities().of_groups(false));
+        let groups =
+            (0..passes.groups().len()).map(|i| Slots::after(&mut stride, passes.group_quantities(i))).collect();
+        Self { all, groups, stride }
     }
 }
 
@@ -84,7 +112,7 @@ pub struct Tile {
     y: u32,
     width: u32,
     height: u32,
-    layout: Layout,
+    layout: Arc<Layout>,
     /// Sum of weight × value, `layout.stride` numbers per pixel.
     sums: Vec<f64>,
     /// Samples taken in, per pixel.
@@ -97,20 +125,20 @@ pub struct Tile {
 }
 
 impl Tile {
-    pub(super) fn new(x: u32, y: u32, width: u32, height: u32, layout: Layout) -> Self {
+    pub(super) fn new(x: u32, y: u32, width: u32, height: u32, layout: Arc<Layout>) -> Self {
         let pixels = width as usize * height as usize;
         let mattes = CryptoKind::ALL.map(|kind| {
-            let len = if layout.quantities.contains(kind.quantity()) { pixels } else { 0 };
+            let len = if layout.all.quantities.contains(kind.quantity()) { pixels } else { 0 };
             vec![Matte::default(); len]
         });
-        let first_hits = if layout.quantities.contains(Quantity::FirstHit) { pixels } else { 0 };
+        let first_hits = if layout.all.quantities.contains(Quantity::FirstHit) { pixels } else { 0 };
         Self {
             x,
             y,
             width,
             height,
-            layout,
             sums: vec![0.0; pixels * layout.stride],
+            layout,
             counts: vec![0; pixels],
             first_hits: vec![FirstHit::BACKGROUND; first_hits],
             mattes,
@@ -136,21 +164,31 @@ impl Tile {
         let pixel = self.index(id.x, id.y);
         let mut values = [0.0_f32; MAX_STRIDE];
         let mut crypto = false;
-        for q in self.layout.quantities.iter() {
-            let (start, width) = (usize::from(self.layout.offsets[q as usize]), q.width());
-            values[start..start + width].copy_from_slice(&q.read(sample)[..width]);
+        let mut once = 0;
+        for (q, start) in self.layout.all.iter() {
+            once = start + q.width();
+            values[start..once].copy_from_slice(&q.read(sample)[..q.width()]);
             crypto |= matches!(q, Quantity::CryptoObject | Quantity::CryptoMaterial | Quantity::CryptoAsset);
         }
-        let values = &values[..self.layout.stride];
+        let values = &values[..once];
+        let groups = || self.layout.groups.iter().zip(&sample.groups);
+        let of_groups = || groups().flat_map(|(slots, group)| slots.iter().map(|(q, at)| (at, q.read_group(group))));
         let coverage = if crypto { weight * sample.crypto.coverage } else { weight };
-        if !coverage.is_finite() || !values.iter().all(|value| value.is_finite()) {
+        let finite = values.iter().all(|value| value.is_finite()) && of_groups().all(|(_, rgb)| rgb.is_finite());
+        if !coverage.is_finite() || !finite {
             self.non_finite.note(id);
             return false;
         }
 
         let sums = &mut self.sums[pixel * self.layout.stride..][..self.layout.stride];
-        for (sum, value) in sums.iter_mut().zip(values) {
-            *sum += f64::from(weight) * f64::from(*value);
+        let add = |sums: &mut [f64], values: &[f32]| {
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += f64::from(weight) * f64::from(*value);
+            }
+        };
+        add(sums, values);
+        for (start, Rgb { r, g, b }) in of_groups() {
+            add(&mut sums[start..], &[r, g, b]);
         }
         if crypto {
             let ids = [sample.crypto.object, sample.crypto.material, sample.crypto.asset];
@@ -182,11 +220,12 @@ impl Tile {
         self.non_finite
     }
 
-    pub(super) fn sums(&self, x: u32, y: u32) -> Means<'_> {
+    /// The sums of a pixel; `group` for the passes of the light group of that index.
+    pub(super) fn sums(&self, x: u32, y: u32, group: Option<usize>) -> Means<'_> {
         let pixel = self.index(x, y);
         Means {
             sums: &self.sums[pixel * self.layout.stride..][..self.layout.stride],
-            offsets: &self.layout.offsets,
+            offsets: &group.map_or(&self.layout.all, |group| &self.layout.groups[group]).offsets,
             count: self.counts[pixel],
             first_hit: self.first_hits.get(pixel).copied().unwrap_or_default(),
         }

@@ -2,6 +2,7 @@
 
 mod exr_image;
 pub mod gltf;
+pub mod ies;
 pub mod image;
 
 use std::path::Path;
@@ -9,6 +10,7 @@ use std::path::Path;
 use crate::desc::SceneDesc;
 use crate::error::{Error, Place, Result, Warnings};
 
+pub use ies::{decode_ies, load_ies};
 pub use image::{decode_image, load_image};
 
 /// What the intensities of a glTF file's lights mean.

@@ -1,10 +1,12 @@
 //! Where a light is and where it shines: what the choice among lights goes by.
 //!
 //! Alejandro Conty Estevez and Christopher Kulla, *Importance Sampling of Many Lights with Adaptive
-//! Tree Splitting*, HPG 2018, section 4.
+//! Tree Splitting*, HPG 2018, section 4. Their geometric term bounds cosines from above by the cone
+//! of directions to the box; here cosines are means over the box, of positive parts, which tell
+//! irradiance better and are 0 under the same condition: that all of the box is behind the plane.
 
 use super::Receiver;
-use crate::math::{Bounds, Vec3, safe_sqrt};
+use crate::math::{Bounds, Vec3, gamma};
 
 /// A box of emitters, a cone of their normals, and how far around those each of them shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,46 +25,160 @@ pub struct LightBounds {
     pub two_sided: bool,
 }
 
+/// [`LightBounds`] as the importance needs it. Bounds of many lights are kept as arrays of these
+/// numbers, so that the loop over them is compiled to vector instructions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lobe {
+    /// Middle of the box.
+    pub center: [f32; 3],
+    /// Half of its edges, rounded up.
+    pub half: [f32; 3],
+    /// As in the bounds.
+    pub axis: [f32; 3],
+    /// Cosine of the half angle of the cone of normals.
+    pub cos_normals: f32,
+    /// Cosine of the half angle of the cone of all directions of emission.
+    pub cos_cone: f32,
+    /// Sum of the intensities of all emitters, each along its normal; negative where both sides emit.
+    pub intensity: f32,
+    /// Length of the mean normal, weighted by intensity.
+    pub mean_normal: f32,
+    /// Share of the intensity that is the same in all directions.
+    pub isotropic: f32,
+}
+
+/// A receiver as the importance needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    p: [f32; 3],
+    /// 0 where light is welcome from any side.
+    n: [f32; 3],
+    any_side: bool,
+    /// What rounding may have moved `p` by.
+    slack: f32,
+}
+
+/// Share of a box's squared radius by which the squared distance to its middle is lengthened: the
+/// mean of 1/d² over the box stays finite from inside of it.
+const INSIDE: f32 = 0.1;
+
+/// Weights are between these: neither underflow nor a light at zero distance hides any other.
+const LEAST: f32 = 1e-36;
+const MOST: f32 = 1e30;
+
 impl LightBounds {
-    /// Upper bound, roughly, of the irradiance at `at`: 0 only where no light can arrive.
+    /// Roughly the unoccluded irradiance at `at`; 0 only where no light can arrive.
     pub fn importance(&self, at: &Receiver) -> f32 {
-        let to_light = self.bounds.center() - at.p;
-        let radius = self.bounds.radius();
-        let dist_squared = to_light.length_squared();
-        // Inside of the sphere around the box nothing is known of directions.
-        let clamped = dist_squared.max(radius * radius).max(f32::MIN_POSITIVE);
-        let inside = dist_squared <= radius * radius;
-        let bound = self.intensity / clamped;
-        if inside {
-            return bound;
+        self.lobe().importance(&Asked::new(at.p, at.n, Vec3::ZERO))
+    }
+
+    pub(super) fn lobe(&self) -> Lobe {
+        let isotropic = if self.cos_normals <= -1.0 { 1.0 } else { 0.0 };
+        self.lobe_of(self.intensity, 1.0 - isotropic, isotropic)
+    }
+
+    /// The lobe of many lights with these bounds, whose intensities sum to `intensity`.
+    pub(super) fn lobe_of(&self, intensity: f32, mean_normal: f32, isotropic: f32) -> Lobe {
+        let center = self.bounds.center();
+        let half = (self.bounds.max - center).max(center - self.bounds.min).max(Vec3::ZERO);
+        let (cos_n, cos_e) = (f64::from(self.cos_normals), f64::from(self.cos_emission));
+        let cone = cos_n.clamp(-1.0, 1.0).acos() + cos_e.clamp(-1.0, 1.0).acos();
+        let intensity = if intensity > 0.0 { intensity } else { 0.0 };
+        Lobe {
+            center: center.to_array(),
+            half: (half + center.abs() * gamma(2)).to_array(),
+            axis: self.axis.to_array(),
+            cos_normals: self.cos_normals,
+            cos_cone: round_down(if cone < std::f64::consts::PI { cone.cos() } else { -1.0 }),
+            intensity: if self.two_sided { -intensity } else { intensity },
+            mean_normal,
+            isotropic,
         }
-        let dist = dist_squared.sqrt();
-        let wi = to_light / dist;
-        let sin_box = (radius / dist).min(1.0);
-        let cos_box = safe_sqrt(1.0 - sin_box * sin_box);
-        // Angle between the axis and the direction back to the receiver, less those of box and normals.
-        let mut cos_axis = -self.axis.dot(wi);
-        if self.two_sided {
-            cos_axis = cos_axis.abs();
-        }
-        let sin_axis = safe_sqrt(1.0 - cos_axis * cos_axis);
-        let sin_normals = safe_sqrt(1.0 - self.cos_normals * self.cos_normals);
-        let (cos, sin) = less(cos_axis, sin_axis, self.cos_normals, sin_normals);
-        let (cos, _) = less(cos, sin, cos_box, sin_box);
-        if cos <= self.cos_emission {
-            return 0.0;
-        }
-        // Lights that shine the same all around, as points do, have no cosine.
-        let emitted = if self.cos_normals <= -1.0 { 1.0 } else { cos };
-        let received = at.n.map_or(1.0, |n| {
-            let cos_n = n.dot(wi);
-            less(cos_n, safe_sqrt(1.0 - cos_n * cos_n), cos_box, sin_box).0.max(0.0)
-        });
-        bound * emitted.max(0.0) * received
     }
 }
 
-/// Cosine and sine of `max(a − b, 0)`, both angles given by theirs.
-fn less(cos_a: f32, sin_a: f32, cos_b: f32, sin_b: f32) -> (f32, f32) {
-    if cos_a >= cos_b { (1.0, 0.0) } else { (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b) }
+/// The largest `f32` not above `x`: a cone that is no narrower.
+pub(super) fn round_down(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) > x { nearest.next_down() } else { nearest }
+}
+
+impl Asked {
+    /// A point that light can reach from the side of `n`, or from any; rounding may have moved it by
+    /// `p_err`.
+    pub fn new(p: Vec3, n: Option<Vec3>, p_err: Vec3) -> Self {
+        let slack = p_err.max_element() + gamma(4) * p.abs().max_element();
+        Self { p: p.to_array(), n: n.unwrap_or(Vec3::ZERO).to_array(), any_side: n.is_none(), slack }
+    }
+
+    /// Bits of the place, to tell receivers apart.
+    pub fn bits(&self) -> u64 {
+        let [x, y, z] = self.p.map(|v| u64::from(v.to_bits()));
+        x ^ y << 21 ^ z << 42 ^ z >> 22
+    }
+}
+
+impl Lobe {
+    /// See [`LightBounds::importance`]. Without branches, for the sake of vector code.
+    #[inline(always)]
+    pub fn importance(&self, at: &Asked) -> f32 {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let extent = |a: [f32; 3]| a[0].abs() * self.half[0] + a[1].abs() * self.half[1] + a[2].abs() * self.half[2];
+        let d = [self.center[0] - at.p[0], self.center[1] - at.p[1], self.center[2] - at.p[2]];
+        let (dist_squared, radius_squared) = (dot(d, d), dot(self.half, self.half));
+        let (dist, radius) = (dist_squared.sqrt(), radius_squared.sqrt());
+        let scale = 1.0 / larger(dist_squared + INSIDE * radius_squared, LEAST);
+        let per_dist = scale.sqrt();
+        let slack = at.slack + 1e-6 * dist + LEAST;
+
+        let above = dot(at.n, d);
+        let received = mean_positive(above, extent(at.n) + slack) * per_dist;
+        let received = if at.any_side { 1.0 } else { received };
+
+        // Heights of the receiver above emitters: the mean, and those above the normals that are nearest
+        // to its direction and farthest off, the box's extent along them included.
+        let along = -dot(self.axis, d);
+        let two_sided = self.intensity < 0.0;
+        let along = if two_sided { along.abs() } else { along };
+        let off = larger(dist_squared - along * along, 0.0).sqrt();
+        let sin_normals = larger(1.0 - self.cos_normals * self.cos_normals, 0.0).sqrt();
+        let (middle, tilt) = (along * self.cos_normals, off * sin_normals);
+        let nearest = if along >= dist * self.cos_normals { dist } else { middle + tilt };
+        let farthest = if along <= -dist * self.cos_normals { -dist } else { middle - tilt };
+        let reach = smaller(extent(self.axis) + radius * sin_normals, radius);
+        let reach = if self.cos_normals < 0.0 { radius } else { reach } + slack;
+        let mean = along * self.mean_normal;
+        let front = mean_positive(mean, nearest + reach - mean);
+        let back = mean_positive(-mean, mean - farthest + reach);
+        let emitted = (if two_sided { front + back } else { front }) * per_dist + self.isotropic;
+
+        // Distance to the cone of emission: from its mantle, or its apex.
+        let sin_cone = larger(1.0 - self.cos_cone * self.cos_cone, 0.0).sqrt();
+        let outside = off * self.cos_cone - along * sin_cone;
+        let outside = if along * self.cos_cone + off * sin_cone > 0.0 { outside } else { dist };
+        let outside = if along + slack >= dist * self.cos_cone { 0.0 } else { outside };
+
+        let lit = (received > 0.0) & (emitted > 0.0) & (outside <= radius + slack) & (self.intensity != 0.0);
+        let weight = self.intensity.abs() * scale * received * emitted;
+        if lit { larger(smaller(weight, MOST), LEAST) } else { 0.0 }
+    }
+}
+
+/// Mean of the positive part of a height that is uniform in `middle ± half`, roughly, at most
+/// `middle + half`: 0 only where all of that is below.
+#[inline(always)]
+fn mean_positive(middle: f32, half: f32) -> f32 {
+    let top = smaller(larger(middle + half, 0.0), 2.0 * half);
+    top * (top / (4.0 * half)) + larger(middle - half, 0.0)
+}
+
+/// Maximum in one instruction: `f32::max` takes care of NaN.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }

@@ -1,129 +1,320 @@
-//! The emissive triangles of one placed mesh.
+//! The emissive triangles of a mesh, and instances of it as lights.
 //!
-//! A triangle is chosen by its power (area × mean radiance), a point on it uniformly by area; the
-//! density in solid angle is `pmf / area · d² / |cos θ_light|`.
+//! The tree over the triangles is in mesh space and shared by all instances of the mesh: which side of
+//! a plane a point is on does not change with an affine map, so a triangle that can light a receiver
+//! can do so in mesh space, too. The geometry of the chosen triangle is that of render space. A point
+//! on a near one is chosen by solid angle, on a far one by area.
 
-use std::f32::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
-use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
-use crate::sampling::{AliasTable, warp};
+use super::bounds::Asked;
+use super::tree::refined;
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
+use crate::math::{Affine3A, Bounds, DVec3, Mat3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
+use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
+use crate::shape::Mesh;
 
-/// One triangle in render space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EmissiveTriangle {
-    /// Corners.
-    pub p: [Vec3; 3],
-    /// Mean emitted radiance, by which it is chosen.
-    pub mean: Rgb,
-    /// Half-width of the box in which rounding has left any of its points.
-    pub p_err: Vec3,
-    /// Index of the triangle in its mesh.
-    pub index: u32,
+/// A triangle whose longest edge is this share of its distance, squared, or less is far: over it the
+/// density by area is nearly uniform in solid angle.
+const FAR: f64 = 0.01;
+
+/// Solid angles between which directions are exact to f32 in f64; beyond, a near triangle is sampled
+/// by area, too.
+const SOLID_ANGLES: std::ops::Range<f64> = 1e-9..TAU * (1.0 - 1e-9);
+
+/// Numbers the choice of a triangle among those that draw on one random number.
+const TRIANGLE: u32 = 1;
+
+/// All emissive triangles of a mesh, emitting on both sides.
+#[derive(Debug)]
+pub struct MeshEmitters {
+    mesh: Arc<Mesh>,
+    emission: Arc<dyn Emission>,
+    /// Triangles of the mesh that the tree's items are, growing; `None` where they are all.
+    triangles: Option<Box<[u32]>>,
+    tree: LightTree,
 }
 
-/// How radiance varies over a mesh light: asked at a triangle of the mesh and its barycentrics.
-pub trait Emission: Send + Sync + std::fmt::Debug {
-    /// Emitted radiance at `(1 − u − v) p0 + u p1 + v p2` of `triangle`.
-    fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
-}
-
-/// All emissive triangles of an instance, emitting on both sides.
+/// The emissive triangles of an instance.
 #[derive(Clone, Debug)]
 pub struct MeshLight {
-    triangles: Arc<[EmissiveTriangle]>,
-    table: Arc<AliasTable>,
-    /// Probability per area of each triangle of the mesh, 0 for those that do not emit.
-    pdf_area: Arc<[f32]>,
-    bounds: Bounds,
-    power: f32,
-    /// `None` where each triangle's radiance is its mean.
-    emission: Option<Arc<dyn Emission>>,
+    emitters: Arc<MeshEmitters>,
+    placed: Arc<Placed>,
+}
+
+/// An instance of [`MeshEmitters`].
+#[derive(Debug)]
+struct Placed {
+    to_render: Affine3A,
+    to_mesh: Affine3A,
+    /// Carries the normal of a plane to mesh space.
+    plane_to_mesh: Mat3,
+    bounds: LightBounds,
+    /// Irradiance in render space per irradiance in mesh space: 1 unless the scale is not the same along
+    /// all axes.
+    importance_scale: f32,
+}
+
+/// A triangle in render space.
+struct Triangle {
+    p: [Vec3; 3],
+    p_err: Vec3,
+    /// Cross product of its edges, in f64, where the squares of neither huge nor tiny triangles leave
+    /// the range.
+    cross: DVec3,
+}
+
+impl MeshEmitters {
+    /// The triangles of `mesh` that emit something; `None` where none does.
+    pub fn new(mesh: Arc<Mesh>, emission: Arc<dyn Emission>) -> Option<Self> {
+        use rayon::prelude::*;
+        let bounds = |triangle: u32| {
+            let mean = emission.mean(triangle);
+            let bounds = triangle_bounds(mesh.corners(triangle), mean)?;
+            Some((triangle, bounds))
+        };
+        let count = u32::try_from(mesh.triangles.len()).ok()?;
+        let (triangles, bounds): (Vec<u32>, Vec<LightBounds>) = (0..count).into_par_iter().filter_map(bounds).unzip();
+        let tree = LightTree::new(&bounds)?;
+        let triangles = (triangles.len() < mesh.triangles.len()).then(|| triangles.into_boxed_slice());
+        Some(Self { mesh, emission, triangles, tree })
+    }
+
+    fn triangle_of(&self, item: u32) -> u32 {
+        self.triangles.as_ref().map_or(item, |triangles| triangles[item as usize])
+    }
+
+    fn item_of(&self, triangle: u32) -> Option<u32> {
+        let Some(triangles) = &self.triangles else { return Some(triangle) };
+        triangles.binary_search(&triangle).ok().map(|i| i as u32)
+    }
+
+    /// Memory held beside the mesh, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.tree.bytes() + self.triangles.as_ref().map_or(0, |triangles| std::mem::size_of_val(&**triangles))
+    }
+}
+
+/// Bounds of a triangle that emits `mean`; `None` where that is nothing.
+fn triangle_bounds(p: [Vec3; 3], mean: Rgb) -> Option<LightBounds> {
+    let [a, b, c] = p.map(|p| p.as_dvec3());
+    let cross = (b - a).cross(c - a);
+    let intensity = 0.5 * cross.length() * f64::from(mean.luminance());
+    if !(intensity > 0.0 && intensity.is_finite()) {
+        return None;
+    }
+    Some(LightBounds {
+        bounds: Bounds::of_points(p),
+        axis: cross.normalize_or_zero().as_vec3(),
+        cos_normals: 1.0,
+        cos_emission: 0.0,
+        intensity: (intensity as f32).clamp(f32::MIN_POSITIVE, f32::MAX),
+        two_sided: true,
+    })
 }
 
 impl MeshLight {
-    /// A light of `triangles`, of a mesh that has `mesh_triangles` in all; `None` where nothing is
-    /// emitted. `emission` gives the radiance at a point where it varies over a triangle.
-    pub fn new(
-        triangles: Vec<EmissiveTriangle>,
-        mesh_triangles: usize,
-        emission: Option<Arc<dyn Emission>>,
-    ) -> Option<Self> {
-        let area = |t: &EmissiveTriangle| {
-            let [a, b, c] = t.p.map(|p| p.as_dvec3());
-            0.5 * (b - a).cross(c - a).length()
-        };
-        let weights: Vec<f64> = triangles.iter().map(|t| area(t) * f64::from(t.mean.luminance())).collect();
-        let table = AliasTable::new(&weights)?;
-        let mut pdf_area = vec![0.0; mesh_triangles];
-        for (i, triangle) in triangles.iter().enumerate() {
-            if weights[i] > 0.0 {
-                pdf_area[triangle.index as usize] = (f64::from(table.pmf(i)) / area(triangle)) as f32;
-            }
+    /// The light of `emitters` placed by `to_render`; `None` where that can't be undone.
+    pub fn new(emitters: Arc<MeshEmitters>, to_render: Affine3A) -> Option<Self> {
+        let in_f64 = |v: crate::math::Vec3A| Vec3::from(v).as_dvec3();
+        let m = crate::math::DMat3::from_cols(
+            in_f64(to_render.matrix3.x_axis),
+            in_f64(to_render.matrix3.y_axis),
+            in_f64(to_render.matrix3.z_axis),
+        );
+        let inverse = m.inverse();
+        let to_mesh =
+            Affine3A::from_mat3_translation(inverse.as_mat3(), (inverse * -in_f64(to_render.translation)).as_vec3());
+        if !to_mesh.is_finite() {
+            return None;
         }
-        let bounds = Bounds::of_points(triangles.iter().flat_map(|t| t.p));
-        let power = (2.0 * std::f64::consts::PI * weights.iter().sum::<f64>()) as f32;
-        Some(Self {
-            triangles: triangles.into(),
-            table: Arc::new(table),
-            pdf_area: pdf_area.into(),
+        let bounds = placed_bounds(&emitters.tree, &to_render, m);
+        let uniform = m.determinant().abs().powf(2.0 / 3.0);
+        let area = f64::from(bounds.intensity) / f64::from(emitters.tree.bounds().intensity);
+        let placed = Placed {
+            to_render,
+            to_mesh,
+            plane_to_mesh: m.transpose().as_mat3(),
             bounds,
-            power,
-            emission,
-        })
+            importance_scale: (area / uniform) as f32,
+        };
+        Some(Self { emitters, placed: Arc::new(placed) })
+    }
+
+    /// The triangles, which other instances may share.
+    pub fn emitters(&self) -> &Arc<MeshEmitters> {
+        &self.emitters
+    }
+
+    /// The receiver in mesh space.
+    fn asked(&self, at: &Receiver) -> Asked {
+        let (p, p_err) = place_point(&self.placed.to_mesh, at.p, Vec3::ZERO);
+        // In f64, where the plane of a huge or tiny mesh stays in range.
+        let n = at.n.map(|n| (self.placed.plane_to_mesh * n).as_dvec3().normalize_or_zero().as_vec3());
+        Asked::new(p, n, p_err)
+    }
+
+    fn triangle(&self, index: u32) -> Triangle {
+        // Blending the corners rounds as `Mesh::point` does.
+        let place = |p: Vec3| place_point(&self.placed.to_render, p, p.abs() * gamma(7));
+        let corners = self.emitters.mesh.corners(index).map(place);
+        let p_err = corners.iter().fold(Vec3::ZERO, |largest, (_, p_err)| largest.max(*p_err));
+        let p = corners.map(|(p, _)| p);
+        let cross = (p[1] - p[0]).as_dvec3().cross((p[2] - p[0]).as_dvec3());
+        Triangle { p, p_err, cross }
+    }
+}
+
+/// Bounds in render space of the tree of a mesh placed by `to_render`, whose linear part is `m`.
+fn placed_bounds(tree: &LightTree, to_render: &Affine3A, m: crate::math::DMat3) -> LightBounds {
+    let of_mesh = tree.bounds();
+    let mut bounds = Bounds::EMPTY;
+    for corner in tree.boxes().flat_map(Bounds::corners) {
+        let (p, p_err) = place_point(to_render, corner, Vec3::ZERO);
+        bounds = bounds.with_point(p - p_err).with_point(p + p_err);
+    }
+    // Rotation and uniform scale carry a cone as it is. Else normals go by the cofactors N of m. For unit x and y the sine of the angle between Nx and Ny is
+    // |N'(x × y)| / (|Nx| |Ny|), N' the cofactors of N: it grows by |N'| / σ² at most, where σ, the
+    // smallest factor of any length under N, is |det m| / |m| or more.
+    let det = m.determinant().abs();
+    let cofactors = m.inverse().transpose() * det;
+    let norm = |m: crate::math::DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+    let scale = det.powf(2.0 / 3.0);
+    let similar = norm(m.transpose() * m - crate::math::DMat3::from_diagonal(DVec3::splat(scale))) < 1e-6 * scale;
+    let growth = norm(m).powi(3) / det;
+    let cos = f64::from(of_mesh.cos_normals);
+    let sin = growth * (1.0 - cos * cos).max(0.0).sqrt();
+    let cos = match () {
+        () if similar => (cos - 1e-5).max(-1.0),
+        () if cos > 0.0 && sin < 0.7 => (1.0 - sin * sin).sqrt() - 1e-6,
+        () => -1.0,
+    };
+    let axis = cofactors * of_mesh.axis.as_dvec3();
+    let area = if cos > 0.5 { axis.length() } else { scale };
+    let intensity = (f64::from(of_mesh.intensity) * area).clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
+    LightBounds {
+        bounds,
+        axis: axis.normalize_or(DVec3::Z).as_vec3(),
+        cos_normals: cos as f32,
+        intensity: intensity as f32,
+        ..*of_mesh
+    }
+}
+
+impl Triangle {
+    /// True where `p` lies in the triangle's plane but for rounding, as the points of an emissive mesh
+    /// lie in their own triangle: nothing is sent there, and on which side rounding has left `p` is chance.
+    fn is_level_with(&self, p: Vec3) -> bool {
+        let height = self.cross.dot(p.as_dvec3() - self.p[0].as_dvec3()).abs();
+        let p_err = (self.p_err + p.abs() * gamma(16)).as_dvec3();
+        height <= self.cross.abs().dot(p_err)
+    }
+
+    /// Unit directions from `p` to the corners, if the triangle is to be sampled by solid angle.
+    fn near(&self, p: Vec3) -> Option<[DVec3; 3]> {
+        let [a, b, c] = self.p.map(|corner| corner.as_dvec3() - p.as_dvec3());
+        let edge = (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared());
+        let dist = a.length_squared().min(b.length_squared()).min(c.length_squared());
+        (edge > FAR * dist && dist > 0.0).then(|| [a.normalize(), b.normalize(), c.normalize()])
+    }
+
+    /// Where the ray from `p` along `w`, which meets the triangle but for rounding, does so.
+    fn barycentrics(&self, p: Vec3, w: DVec3) -> [f32; 3] {
+        let [a, b, c] = self.p.map(|corner| corner.as_dvec3() - p.as_dvec3());
+        // Volumes that the direction spans with two of the corners.
+        let shares = [w.dot(b.cross(c)), w.dot(c.cross(a)), w.dot(a.cross(b))];
+        let facing = self.cross.dot(a).signum();
+        let shares = shares.map(|share| (share * facing).max(0.0));
+        let sum: f64 = shares.iter().sum();
+        if sum > 0.0 { shares.map(|share| (share / sum) as f32) } else { [1.0 / 3.0; 3] }
+    }
+
+    fn area(&self) -> f64 {
+        0.5 * self.cross.length()
     }
 }
 
 impl Emitter for MeshLight {
     fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let p = at.p;
-        let triangle = &self.triangles[self.table.sample(uc).index];
-        let [a, b, c] = triangle.p;
-        let [b0, b1, b2] = warp::sample_triangle(u);
-        let on_light = a * b0 + b * b1 + c * b2;
-        // In f64, where the squares of neither huge nor tiny triangles leave the range.
-        let ng = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-        let to_light = on_light - p;
-        let dist_squared = to_light.length_squared();
-        let wi = to_light / dist_squared.sqrt();
-        let cos = ng.dot(wi).abs();
-        let pdf = self.pdf_area[triangle.index as usize] * dist_squared / cos;
-        let li = match &self.emission {
-            Some(emission) => emission.radiance(triangle.index, [b1, b2]),
-            None => triangle.mean,
+        let asked = self.asked(at);
+        let tree = &self.emitters.tree;
+        let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(uc, &asked, TRIANGLE))?;
+        let index = self.emitters.triangle_of(chosen.item);
+        let triangle = self.triangle(index);
+        if triangle.is_level_with(at.p) {
+            return None;
+        }
+        let ng = triangle.cross.normalize_or_zero().as_vec3();
+        let spherical = triangle.near(at.p).and_then(SphericalTriangle::new);
+        let spherical = spherical.filter(|s| SOLID_ANGLES.contains(&s.solid_angle()));
+        let (barycentrics, direction) = match &spherical {
+            Some(spherical) => {
+                let w = spherical.sample(u);
+                (triangle.barycentrics(at.p, w), Some(w))
+            }
+            None => (sample_triangle(u), None),
         };
+        let [b0, b1, b2] = barycentrics;
+        let on_light = triangle.p[0] * b0 + triangle.p[1] * b1 + triangle.p[2] * b2;
+        let to_light = on_light - at.p;
+        let (wi, density) = match (direction, &spherical) {
+            (Some(w), Some(spherical)) => (w.as_vec3(), 1.0 / spherical.solid_angle()),
+            _ => {
+                let wi = to_light.as_dvec3().normalize_or_zero().as_vec3();
+                (wi, to_light.as_dvec3().length_squared() / (f64::from(ng.dot(wi).abs()) * triangle.area()))
+            }
+        };
+        let pdf = (density * f64::from(chosen.pmf)) as f32;
+        let li = self.emitters.emission.radiance(index, [b1, b2]);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
         // Rounding has moved the light's point, and moves the ray that is traced towards it from `p`.
-        let p_err = triangle.p_err + Vec3::splat(gamma(8) * p.abs().max_element());
+        let largest = at.p.abs().max(on_light.abs()).max_element();
+        let p_err = triangle.p_err + Vec3::splat(gamma(8) * largest);
         let end = Some(offset_ray_origin(on_light, p_err, ng, -wi));
         Some(LightSample { li, wi, end, pdf, delta: false })
     }
 
-    fn pdf_li(&self, _at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
-        let Some(at) = hit else { return 0.0 };
-        let pdf = self.pdf_area[at.triangle as usize] * at.dist * at.dist / at.ng.dot(wi).abs();
+    fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
+        let Some(hit) = hit else { return 0.0 };
+        let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
+        let triangle = self.triangle(hit.triangle);
+        if triangle.is_level_with(at.p) {
+            return 0.0;
+        }
+        let solid_angle = triangle.near(at.p).map(solid_angle_of_triangle);
+        let density = match solid_angle.filter(|angle| SOLID_ANGLES.contains(angle)) {
+            Some(angle) => 1.0 / angle,
+            None => {
+                let dist = f64::from(hit.dist);
+                dist * dist / (f64::from(hit.ng.dot(wi).abs()) * triangle.area())
+            }
+        };
+        if !density.is_finite() {
+            return 0.0;
+        }
+        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&self.asked(at), item))) as f32;
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        Some(LightBounds {
-            bounds: self.bounds,
-            axis: Vec3::Z,
-            cos_normals: -1.0,
-            cos_emission: 0.0,
-            intensity: self.power / (4.0 * PI),
-            two_sided: true,
-        })
+        Some(self.placed.bounds)
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
-        self.bounds().map_or(0.0, |bounds| bounds.importance(at))
+        self.emitters.tree.weigh(&self.asked(at)).sum * self.placed.importance_scale
     }
 
     fn power(&self, _scene: Bounds) -> f32 {
-        self.power
+        let emitters = &self.emitters;
+        let power =
+            |triangle: u32| self.triangle(triangle).area() * f64::from(emitters.emission.mean(triangle).luminance());
+        let sum: f64 = match &emitters.triangles {
+            Some(triangles) => triangles.iter().map(|&i| power(i)).sum(),
+            None => (0..emitters.mesh.triangles.len() as u32).map(power).sum(),
+        };
+        (2.0 * PI * sum) as f32
     }
 }

@@ -3,25 +3,44 @@
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
 //! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
 
+mod aim;
 mod bounds;
+mod choice;
+mod cylinder;
+mod disk;
 mod distant;
 mod dome;
+mod emission;
+mod flat;
 mod light;
 mod mesh;
 mod point;
 mod profile;
+mod rect;
 mod select;
+mod sphere;
+mod spread;
+mod tree;
 
 pub use bounds::LightBounds;
+pub use choice::{Choice, Strategy};
+pub use cylinder::Cylinder;
+pub use disk::Disk;
 pub use distant::Distant;
 pub use dome::{Dome, DomeImage};
+pub use emission::Emission;
+pub use flat::Flat;
 pub use light::{Light, Rules, Seen, Shadow};
-pub use mesh::{Emission, EmissiveTriangle, MeshLight};
+pub use mesh::{MeshEmitters, MeshLight};
 pub use point::Point;
-pub use profile::Profile;
-pub use select::{Choice, LightSet};
+pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
+pub use rect::Rect;
+pub use select::LightSet;
+pub use sphere::Sphere;
+pub use spread::Spread;
+pub use tree::{ChosenItem, LightTree};
 
-use crate::math::{Bounds, Rgb, Vec3};
+use crate::math::{Bounds, Rgb, Vec3, gamma, offset_ray_origin};
 
 /// A point that asks for light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,6 +175,7 @@ macro_rules! emitters {
 
 emitters!(
     Point, // a delta
+    Sphere, Cylinder, Rect, Disk, // lamps
     Distant, Dome, MeshLight,
 );
 
@@ -164,6 +184,13 @@ impl AnyEmitter {
     pub fn is_lamp(&self) -> bool {
         !matches!(self, Self::Point(_) | Self::Distant(_) | Self::Dome(_) | Self::MeshLight(_))
     }
+}
+
+/// Where a shadow ray from `p` along `wi` to the point `on_light` of a surface ends: before it by more
+/// than rounding has moved either. `ng` is the normal there.
+fn end_before(on_light: Vec3, p: Vec3, ng: Vec3, wi: Vec3) -> Vec3 {
+    let p_err = gamma(8) * on_light.abs().max_element().max(p.abs().max_element());
+    offset_ray_origin(on_light, Vec3::splat(p_err), ng, -wi)
 }
 
 impl Receiver {

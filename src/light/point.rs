@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver};
+use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, profile};
 use crate::math::{Bounds, Rgb, Vec3};
 
 /// A point light, a delta in position; with a cone in its profile, a spot light.
@@ -15,6 +15,20 @@ pub struct Point {
     pub intensity: Rgb,
     /// Shaping and decay.
     pub profile: Option<Arc<Profile>>,
+}
+
+impl Point {
+    fn light_bounds(&self) -> LightBounds {
+        let bounds = LightBounds {
+            bounds: Bounds { min: self.p, max: self.p },
+            axis: Vec3::Z,
+            cos_normals: -1.0,
+            cos_emission: 0.0,
+            intensity: self.intensity.luminance(),
+            two_sided: false,
+        };
+        self.profile.as_ref().map_or(bounds, |profile| profile.bound(bounds))
+    }
 }
 
 impl Emitter for Point {
@@ -33,21 +47,15 @@ impl Emitter for Point {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        Some(LightBounds {
-            bounds: Bounds { min: self.p, max: self.p },
-            axis: Vec3::Z,
-            cos_normals: -1.0,
-            cos_emission: 0.0,
-            intensity: self.intensity.luminance(),
-            two_sided: false,
-        })
+        Some(self.light_bounds())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
-        self.bounds().map_or(0.0, |bounds| bounds.importance(at))
+        profile::importance(&self.light_bounds(), self.profile.as_deref(), at)
     }
 
     fn power(&self, _scene: Bounds) -> f32 {
-        4.0 * PI * self.intensity.luminance()
+        let mean = self.profile.as_ref().map_or(Rgb::WHITE, |profile| profile.mean());
+        4.0 * PI * (self.intensity * mean).luminance()
     }
 }

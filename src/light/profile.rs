@@ -1,19 +1,241 @@
 //! How the emission of a local light varies with direction and distance: cone, focus, measured
 //! distribution, decay.
 
-use crate::math::{Rgb, Vec3};
+mod cone;
+mod decay;
+mod ies;
+mod quadrature;
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use cone::{OffAxis, keeps_angles, stretched_half};
+
+use super::{LightBounds, Receiver};
+use crate::math::{DMat3, DVec3, Rgb, Vec3};
+
+pub use cone::Cone;
+pub use decay::{Decay, Falloff};
+pub use ies::Ies;
+
+/// Cosine of the angle by which the light tree may be off at the rim of a cone: sines that come from
+/// the cosines of small angles in `f32` are that far from the truth.
+const RIM: f32 = 1.0 - 1e-5;
+
+/// How emission varies with direction; the axis is local −z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shaping {
+    /// A cone outside of which there is no light.
+    pub cone: Option<Cone>,
+    /// Light to render space with its scale, for a cone that the scale distorts (Cycles' spot); not
+    /// singular, of the order of 1.
+    pub stretch: Option<DMat3>,
+    /// UsdLux focus: the factor `max(cos θ, 0)^focus`; 0 for none.
+    pub focus: f64,
+    /// UsdLux focus tint: the colour that the factor fades to.
+    pub focus_tint: [f64; 3],
+    /// A measured distribution.
+    pub ies: Option<Ies>,
+}
 
 /// Shaping and decay of one light; lights that have neither hold none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// No light farther than this (KHR_lights_punctual's window); infinite for none.
-    pub range: f32,
+    shaping: Shaping,
+    decay: Decay,
+    /// Render space to the light's, orthonormal.
+    to_local: DMat3,
+    /// Render space to the one in which the cone is round.
+    to_cone: DMat3,
+    /// Unit axis in render space of a cone that holds all the light.
+    axis: Vec3,
+    /// Half angle of that cone, radians.
+    half: f64,
+    peak: Rgb,
+    mean: Rgb,
 }
 
 impl Profile {
-    /// The factor of what leaves the light along the unit direction `w` and arrives after `dist`.
-    pub fn factor(&self, _w: Vec3, dist: f32) -> Rgb {
-        let window = if self.range.is_finite() { (1.0 - (dist / self.range).powi(4)).clamp(0.0, 1.0) } else { 1.0 };
-        Rgb::splat(window)
+    /// The profile of a light whose orthonormal axes in render space are the columns of `axes`.
+    pub fn new(axes: DMat3, shaping: Shaping, decay: Decay) -> Self {
+        let to_local = axes.transpose();
+        let stretch = shaping.stretch.filter(|&m| shaping.cone.is_some() && !keeps_angles(m));
+        let shaping = Shaping { stretch, ..shaping };
+        let to_cone = stretch.map_or(to_local, |m| m.inverse());
+        let mut profile = Self {
+            to_local,
+            to_cone,
+            axis: -axes.z_axis.as_vec3(),
+            half: PI,
+            peak: shaping.peak(),
+            mean: Rgb::WHITE,
+            shaping,
+            decay,
+        };
+        profile.find_cone(axes);
+        profile.mean = profile.mean_over(if stretch.is_some() { 256 } else { 1 }, &|_| 1.0);
+        profile
     }
+
+    /// The smallest cone around the light's axis, to either side, that holds what the shaping leaves.
+    fn find_cone(&mut self, axes: DMat3) {
+        let shaping = &self.shaping;
+        let (mut from, mut to) = (0.0_f64, PI);
+        if shaping.focus > 0.0 && shaping.focus_tint == [0.0; 3] {
+            to = to.min(FRAC_PI_2);
+        }
+        if let Some([low, high]) = shaping.ies.as_ref().map(Ies::support) {
+            (from, to) = (from.max(low), to.min(high));
+        }
+        let cone = shaping.cone.as_ref().map_or(PI, Cone::half);
+        if shaping.stretch.is_none() {
+            to = to.min(cone);
+        }
+        if from >= to {
+            (self.half, self.peak) = (0.0, Rgb::BLACK);
+            return;
+        }
+        (self.axis, self.half) =
+            if PI - from < to { (axes.z_axis.as_vec3(), PI - from) } else { (-axes.z_axis.as_vec3(), to) };
+        if let Some(stretch) = shaping.stretch {
+            let half = stretched_half(stretch, cone);
+            if half < self.half {
+                (self.axis, self.half) = (-stretch.z_axis.normalize().as_vec3(), half);
+            }
+        }
+    }
+
+    /// The factor of what leaves the light along the unit direction `w` and arrives after `dist` metres.
+    pub fn factor(&self, w: Vec3, dist: f32) -> Rgb {
+        let decay = Rgb::splat(self.decay.factor(f64::from(dist)) as f32);
+        if self.shaping.is_even() { decay } else { decay * self.shape(w.as_dvec3(), false) }
+    }
+
+    /// The factor of direction `w`, unit or not; `averaged` takes the mean of a measured distribution
+    /// over all azimuths.
+    fn shape(&self, w: DVec3, averaged: bool) -> Rgb {
+        let shaping = &self.shaping;
+        let mut factor = 1.0;
+        if let Some(cone) = &shaping.cone {
+            factor *= cone.factor(OffAxis::new(self.to_cone * w));
+            if factor == 0.0 {
+                return Rgb::BLACK;
+            }
+        }
+        if shaping.ies.is_none() && shaping.focus == 0.0 {
+            return Rgb::splat(factor as f32);
+        }
+        let local = self.to_local * w;
+        let off_axis = OffAxis::new(local);
+        if let Some(ies) = &shaping.ies {
+            let theta = off_axis.theta();
+            factor *= if averaged { ies.mean_factor(theta) } else { ies.factor(theta, local.y.atan2(local.x)) };
+        }
+        if shaping.focus == 0.0 {
+            return Rgb::splat(factor as f32);
+        }
+        let focus = off_axis.cos.max(0.0).powf(shaping.focus);
+        Rgb::from(shaping.focus_tint.map(|tint| factor * (tint + (1.0 - tint) * focus)))
+    }
+
+    /// Largest factor of any direction, without decay.
+    pub fn peak(&self) -> Rgb {
+        self.peak
+    }
+
+    /// Mean factor over all directions, without decay.
+    pub fn mean(&self) -> Rgb {
+        self.mean
+    }
+
+    /// Mean over all directions `w` of the factor times `weight(w)`, without decay: for lights that do
+    /// not shine the same all around.
+    pub fn mean_weighted(&self, weight: &dyn Fn(Vec3) -> f64) -> Rgb {
+        self.mean_over(256, weight)
+    }
+
+    /// Unit axis and half angle in radians of a cone outside of which there is no light.
+    pub fn cone(&self) -> (Vec3, f64) {
+        (self.axis, self.half)
+    }
+
+    /// A bound from above of the decay at distances of `near` to `far` metres.
+    pub fn decay_at_most(&self, near: f32, far: f32) -> f32 {
+        self.decay.at_most(f64::from(near), f64::from(far)).min(f64::from(f32::MAX)) as f32
+    }
+
+    /// The bounds of a light that has this profile, given those that it has without.
+    pub fn bound(&self, of: LightBounds) -> LightBounds {
+        let cos_half = (self.half + 1e-6).min(PI).cos() as f32;
+        let mut bounds = LightBounds { intensity: (of.intensity * self.peak.max_component()).min(f32::MAX), ..of };
+        if of.cos_normals <= -1.0 && self.half < PI {
+            // What shines everywhere alike shines into the cone alike.
+            (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, cos_half, RIM);
+            bounds.two_sided = false;
+        } else if of.cos_normals >= 1.0 && !of.two_sided && of.axis.dot(self.axis) > RIM {
+            bounds.cos_emission = of.cos_emission.max(cos_half - 1e-5);
+        }
+        bounds
+    }
+
+    /// Mean over the sphere of directions, over `azimuths` planes through the axis; one is for a light
+    /// that is the same all around.
+    fn mean_over(&self, azimuths: usize, weight: &dyn Fn(Vec3) -> f64) -> Rgb {
+        // Directions v around the cone's own axis, so that its edge lies between steps. They become
+        // those of render space, w = M v, whose solid angle is |det M| / |w|³ of theirs.
+        let to_render = self.to_cone.inverse();
+        let volume = to_render.determinant().abs();
+        let edges = self.edges();
+        let mut sums = [0.0; 3];
+        for azimuth in 0..azimuths {
+            let (sin_phi, cos_phi) = (TAU * (azimuth as f64 + 0.5) / azimuths as f64).sin_cos();
+            for (channel, sum) in sums.iter_mut().enumerate() {
+                for step in edges.windows(2) {
+                    *sum += quadrature::gauss(step[0], step[1], |theta| {
+                        let (sin, cos) = theta.sin_cos();
+                        let w = to_render * DVec3::new(sin * cos_phi, sin * sin_phi, -cos);
+                        let length = w.length();
+                        let density = volume / (length * length * length);
+                        let w = w / length;
+                        f64::from(self.shape(w, azimuths == 1)[channel]) * weight(w.as_vec3()) * density * 0.5 * sin
+                    });
+                }
+            }
+        }
+        Rgb::from(sums.map(|sum| sum / azimuths as f64))
+    }
+
+    /// Angles off the axis, growing from 0 to π, between which the factor is smooth.
+    fn edges(&self) -> Vec<f64> {
+        // A focus can be sharp: steps that halve towards the axis see it.
+        let mut edges: Vec<f64> = (0..12).map(|k| FRAC_PI_2 / f64::from(1 << k)).chain([0.0, PI]).collect();
+        edges.extend(self.shaping.cone.iter().flat_map(Cone::edges));
+        edges.extend(self.shaping.ies.iter().flat_map(Ies::edges));
+        edges.retain(|edge| (0.0..=PI).contains(edge));
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    }
+}
+
+impl Shaping {
+    /// True where emission does not vary with direction.
+    fn is_even(&self) -> bool {
+        self.cone.is_none() && self.focus == 0.0 && self.ies.is_none()
+    }
+
+    fn peak(&self) -> Rgb {
+        let ies = self.ies.as_ref().map_or(1.0, Ies::peak);
+        let tint = if self.focus > 0.0 { self.focus_tint } else { [0.0; 3] };
+        Rgb::from(tint.map(|tint| ies * tint.max(1.0)))
+    }
+}
+
+/// What a light with `bounds` and `profile` may bring to `at`, decay included.
+pub(super) fn importance(bounds: &LightBounds, profile: Option<&Profile>, at: &Receiver) -> f32 {
+    let importance = bounds.importance(at);
+    let Some(profile) = profile else { return importance };
+    let dist = (bounds.bounds.center() - at.p).length();
+    let radius = bounds.bounds.radius();
+    let decay = profile.decay_at_most((dist - radius).max(0.0), dist + radius);
+    (importance * decay).min(f32::MAX)
 }

@@ -1,14 +1,14 @@
-//! Which light a shading point samples.
-//!
-//! With few lights each is asked what it could send to the point and one is chosen in proportion;
-//! beyond [`SCAN_LIMIT`] lights that would cost more than it gains, and the choice is by power.
+//! Which light a shading point samples, and which lamps a ray meets.
 
-use super::{Emitter, EmitterHit, Light, Receiver};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::choice::Selection;
+use super::{Choice, Emitter, EmitterHit, Light, LightBounds, LightTree, Receiver, Strategy};
 use crate::math::{Bounds, Vec3};
-use crate::sampling::AliasTable;
 
-/// Up to so many lights are weighed at every shading point.
-const SCAN_LIMIT: usize = 32;
+/// Up to so many lamps are asked one by one whether a ray meets them.
+const FEW_LAMPS: usize = 8;
 
 /// All lights of a scene and the choice among them.
 #[derive(Clone, Debug, Default)]
@@ -16,39 +16,38 @@ pub struct LightSet {
     lights: Vec<Light>,
     /// Indices of the lights that the background shows.
     background: Vec<u32>,
-    /// Indices of the lights with a shape of their own.
+    /// Indices of the lights with a shape of their own, growing.
     lamps: Vec<u32>,
-    by_power: Option<AliasTable>,
-}
-
-/// Odds by power; those whose power is lost in `f32` still get a small share.
-fn power_table(lights: &[Light], scene: Bounds) -> Option<AliasTable> {
-    let powers: Vec<f64> = lights.iter().map(|l| f64::from(l.emitter.power(scene)).clamp(0.0, 1e30)).collect();
-    let least = (1e-3 * powers.iter().sum::<f64>() / powers.len() as f64).max(f64::MIN_POSITIVE);
-    AliasTable::new(&powers.iter().map(|p| p.max(least)).collect::<Vec<_>>())
-}
-
-/// A light that was chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
-    /// Its index.
-    pub light: u32,
-    /// Probability with which it was chosen.
-    pub pmf: f32,
-    /// A fresh uniform number, made of what the choice left of the one it took.
-    pub u: f32,
+    /// Over `lamps`, where they are many.
+    lamp_tree: Option<Arc<LightTree>>,
+    /// For each class of receivers; classes that the same lights reach share one.
+    selections: Vec<Arc<Selection>>,
 }
 
 impl LightSet {
     /// The lights of a scene whose box is `scene` and whose receivers are of `classes` classes.
-    pub fn new(lights: Vec<Light>, scene: Bounds, _classes: usize) -> Self {
+    pub fn new(lights: Vec<Light>, scene: Bounds, classes: usize) -> Self {
+        Self::chosen_by(Strategy::Tree, lights, scene, classes)
+    }
+
+    /// The same, with lights chosen by `strategy`.
+    pub fn chosen_by(strategy: Strategy, lights: Vec<Light>, scene: Bounds, classes: usize) -> Self {
         let those = |test: &dyn Fn(&Light) -> bool| -> Vec<u32> {
             (0..lights.len() as u32).filter(|&i| test(&lights[i as usize])).collect()
         };
         let background = those(&|light| light.emitter.in_background());
         let lamps = those(&|light| light.emitter.is_lamp());
-        let by_power = (lights.len() > SCAN_LIMIT).then(|| power_table(&lights, scene)).flatten();
-        Self { lights, background, lamps, by_power }
+        let lamp_tree = tree_of(&lights, &lamps).map(Arc::new);
+        let mut known: HashMap<Vec<u32>, Arc<Selection>> = HashMap::new();
+        let of_class = |class: usize| {
+            let members = those(&|light| light.rules.lights(class as u16));
+            let selection = known
+                .entry(members)
+                .or_insert_with_key(|members| Arc::new(Selection::new(&lights, members.clone(), scene, strategy)));
+            selection.clone()
+        };
+        let selections = (0..classes.clamp(1, 1 << 16)).map(of_class).collect();
+        Self { lights, background, lamps, lamp_tree, selections }
     }
 
     /// True where nothing shines.
@@ -82,49 +81,28 @@ impl LightSet {
     }
 
     /// Calls `visit` with every lamp that the ray from `p` along the unit direction `wi` meets at a
-    /// distance of `range`, in the order of their indices.
+    /// distance of `range`, in an order that depends on the scene and the ray alone.
     pub fn lamps_along(&self, p: Vec3, wi: Vec3, range: [f32; 2], mut visit: impl FnMut(u32, &Light, &EmitterHit)) {
-        for &i in &self.lamps {
+        let mut ask = |i: u32| {
             let light = self.get(i);
             if let Some(hit) = light.emitter.hit(p, wi).filter(|hit| (range[0]..range[1]).contains(&hit.dist)) {
                 visit(i, light, &hit);
             }
+        };
+        match &self.lamp_tree {
+            Some(tree) => tree.along(p, wi, range[1], |item| ask(self.lamps[item as usize])),
+            None => self.lamps.iter().copied().for_each(ask),
         }
     }
 
     /// Chooses a light for `at` by `u`; `None` where none can reach it.
     pub fn choose(&self, at: &Receiver, u: f32) -> Option<Choice> {
-        if let Some(table) = &self.by_power {
-            let chosen = table.sample(u);
-            return Some(Choice { light: chosen.index as u32, pmf: chosen.pmf, u: chosen.u });
-        }
-        if self.lights.len() == 1 {
-            return Some(Choice { light: 0, pmf: 1.0, u });
-        }
-        let (weights, total) = self.weigh(at);
-        let mut left = u * total;
-        let mut last = None;
-        for (i, &weight) in weights[..self.lights.len()].iter().enumerate().filter(|(_, w)| **w > 0.0) {
-            let rest = (left / weight).clamp(0.0, crate::math::ONE_MINUS_EPSILON);
-            last = Some(Choice { light: i as u32, pmf: weight / total, u: rest });
-            if left < weight {
-                return last;
-            }
-            left -= weight;
-        }
-        last
+        self.selections.get(usize::from(at.class))?.choose(&self.lights, at, u)
     }
 
     /// Probability with which [`LightSet::choose`] at `at` chooses `light`.
     pub fn pmf(&self, at: &Receiver, light: u32) -> f32 {
-        if let Some(table) = &self.by_power {
-            return table.pmf(light as usize);
-        }
-        if self.lights.len() == 1 {
-            return 1.0;
-        }
-        let (weights, total) = self.weigh(at);
-        if total > 0.0 { weights[light as usize] / total } else { 0.0 }
+        self.selections.get(usize::from(at.class)).map_or(0.0, |selection| selection.pmf(&self.lights, at, light))
     }
 
     /// Density in solid angle with which light sampling at `at` finds `light` along `wi`.
@@ -132,19 +110,17 @@ impl LightSet {
         let pdf = self.get(light).emitter.pdf_li(at, wi, hit);
         if pdf > 0.0 { pdf * self.pmf(at, light) } else { 0.0 }
     }
+}
 
-    /// Importance of each light at `at`, and their sum.
-    fn weigh(&self, at: &Receiver) -> ([f32; SCAN_LIMIT], f32) {
-        let mut weights = [0.0; SCAN_LIMIT];
-        let mut total = 0.0;
-        for (weight, light) in weights.iter_mut().zip(&self.lights) {
-            if !light.rules.lights(at.class) {
-                continue;
-            }
-            // Bounded, so that a point light at zero distance leaves the sum finite.
-            *weight = light.emitter.importance(at).min(1e30);
-            total += *weight;
-        }
-        (weights, total)
+/// The tree over many lamps; `None` for a few, or where one of them has no bounds.
+fn tree_of(lights: &[Light], lamps: &[u32]) -> Option<LightTree> {
+    if lamps.len() <= FEW_LAMPS {
+        return None;
     }
+    // A lamp that rays alone can find is in the tree, too.
+    let bounds = |&i: &u32| {
+        let bounds = lights[i as usize].emitter.bounds()?;
+        Some(LightBounds { intensity: bounds.intensity.max(f32::MIN_POSITIVE), ..bounds })
+    };
+    LightTree::new(&lamps.iter().map(bounds).collect::<Option<Vec<_>>>()?)
 }

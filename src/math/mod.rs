@@ -8,6 +8,7 @@ mod frame;
 mod ray;
 mod rgb;
 mod scalar;
+mod transform;
 
 pub use bounds::Bounds;
 pub use frame::Frame;
@@ -15,3 +16,4 @@ pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3
 pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;
 pub use scalar::{ONE_MINUS_EPSILON, gamma, safe_acos, safe_sqrt, sqr};
+pub use transform::place_point;

@@ -13,7 +13,7 @@ mod sampler;
 pub mod warp;
 
 pub use dimension::{Decision, Dimension};
-pub use distribution::{AliasTable, Distribution2d};
+pub use distribution::{AliasTable, BilinearImage, Distribution2d};
 pub use mis::{balance_heuristic, power_heuristic};
 pub use pattern::{PATTERNS, Pattern, PatternInfo};
 pub use sampler::Sampler;

@@ -45,9 +45,8 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// The effects that `scene` calls for under `settings`.
-    pub fn of(scene: &SceneDesc, settings: &Settings) -> Self {
-        let passes = &settings.passes;
+    /// The effects that `scene` calls for under `settings`, for `passes` with the scene's light groups.
+    pub fn of(scene: &SceneDesc, settings: &Settings, passes: &PassSet) -> Self {
         if settings.effects == EffectsMode::All {
             return Self::forced(passes);
         }
@@ -103,7 +102,7 @@ fn has_own_shadow(links: &LightLinks) -> bool {
     !links.cast_shadow || links.blockers.is_some()
 }
 
-fn emits(material: &MaterialDesc) -> bool {
+pub(super) fn emits(material: &MaterialDesc) -> bool {
     !material.unlit && material.emission_strength != 0.0 && material.emission.factor.iter().any(|&c| c != 0.0)
 }
 

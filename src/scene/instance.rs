@@ -1,7 +1,7 @@
 //! A mesh placed in render space.
 
 use crate::light::Rules;
-use crate::math::{Affine3A, Mat3A, Vec3, gamma};
+use crate::math::{Affine3A, Mat3A, Vec3, place_point};
 
 /// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
 pub mod mask {
@@ -78,12 +78,6 @@ impl Instance {
 
     /// `p` in render space, with the bound of its error grown by what the transform adds.
     pub fn point(&self, p: Vec3, p_err: Vec3) -> (Vec3, Vec3) {
-        let m = &self.object_to_render;
-        let magnitude = |v: Vec3| {
-            Vec3::from(m.matrix3.x_axis.abs() * v.x + m.matrix3.y_axis.abs() * v.y + m.matrix3.z_axis.abs() * v.z)
-        };
-        let p_err =
-            magnitude(p_err) * (1.0 + gamma(3)) + (magnitude(p.abs()) + Vec3::from(m.translation).abs()) * gamma(8);
-        (m.transform_point3(p), p_err)
+        place_point(&self.object_to_render, p, p_err)
     }
 }

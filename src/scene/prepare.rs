@@ -3,23 +3,28 @@
 mod camera;
 mod dome;
 mod emissive;
+mod flat;
 mod geometry;
 mod lamp;
 mod lights;
 mod links;
 mod materials;
+mod mend;
+mod shaping;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::effects::emits;
 use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
-use crate::desc::{self, LightDesc, LightKind, SceneDesc, Visibility};
-use crate::error::{Result, Warnings};
+use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
+use crate::error::{Error, Result, Warnings};
 use crate::film::Quantity;
-use crate::light::{AnyEmitter, Light, LightSet};
+use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
-use crate::settings::Settings;
+use crate::settings::{LightSelection, Settings};
 use links::Links;
 
 /// What to make of a scene's cameras.
@@ -46,7 +51,7 @@ pub struct Prepared {
 /// Turns `desc` into what is traced, as `settings` ask.
 ///
 /// # Errors
-/// An index of `desc` that is out of range, an unknown camera, a picture without size.
+/// An index of `desc` that is out of range, an unknown camera or light group, a picture without size.
 pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
@@ -54,7 +59,8 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
     let camera = camera::prepare(&camera_desc, size, origin);
 
-    let effects = Effects::of(&desc, settings);
+    let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    let effects = Effects::of(&desc, settings, &passes);
     let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
@@ -63,20 +69,26 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let build_time = start.elapsed();
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
-    let lights = if effects.light || settings.passes.needs(Quantity::Environment) {
+    let lights = if effects.light || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
-        lights::prepare(&desc, dome, origin, &links, &[], &mut geometry, &materials, &textures, &mut warnings)
+        let groups = passes.groups();
+        lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings)
     } else {
         Vec::new()
     };
     let shows = |light: &Light| light.rules.seen.camera && matches!(light.emitter, AnyEmitter::Dome(_));
     let background_visible = lights.iter().any(shows);
-    let lights = LightSet::new(lights, geometry.bvh.bounds(), links.receiver_classes());
+    let by = match settings.light_selection {
+        LightSelection::Tree => Strategy::Tree,
+        LightSelection::Power => Strategy::Power,
+        LightSelection::Uniform => Strategy::Uniform,
+    };
+    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
     let scene = Scene {
         camera,
         size,
         origin,
-        passes: settings.passes.clone(),
+        passes,
         effects,
         lights,
         background_visible,
@@ -88,6 +100,14 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         textures,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// Names of the light groups that lamps and emissive objects are in.
+fn light_groups(desc: &SceneDesc) -> Vec<Arc<str>> {
+    let can_emit = |i: &&InstanceDesc| i.materials.iter().flatten().any(|&m| emits(&desc.materials[m as usize]));
+    let of_objects = desc.instances.iter().filter(can_emit).map(|i| &i.links);
+    let groups = desc.lights.iter().map(|light| &light.links).chain(of_objects).filter_map(|links| links.group.clone());
+    groups.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// A point near the camera on a grid as coarse as the scene allows: where everything is near the

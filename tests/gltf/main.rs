@@ -8,6 +8,7 @@ mod deformation;
 mod features;
 #[path = "../support/glb.rs"]
 mod glb;
+mod lights;
 mod materials;
 mod mutation;
 

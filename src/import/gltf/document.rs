@@ -5,6 +5,7 @@ use crate::error::{Error, Place, Result, Warnings};
 
 /// Extensions that are read in full.
 const SUPPORTED: &[&str] = &[
+    "EXT_lights_ies",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_animation_pointer",
@@ -40,7 +41,6 @@ const VISIBLE: &[(&str, &str)] = &[
     ("KHR_materials_subsurface", "subsurface scattering is left out"),
     ("KHR_materials_volume_scatter", "scattering inside of volumes is left out"),
     ("EXT_lights_image_based", "the image-based light is left out"),
-    ("EXT_lights_ies", "IES profiles are left out: such lights shine evenly"),
     ("MSFT_lod", "the finest level of detail is rendered"),
 ];
 

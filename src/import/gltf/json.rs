@@ -58,10 +58,14 @@ object!(Asset { version: String, min_version: Option<String>, generator: String 
 object!(RootExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     lights: LightList,
+    #[serde(rename = "EXT_lights_ies")]
+    ies: IesList,
     #[serde(rename = "KHR_materials_variants")]
     variants: VariantList,
 });
 object!(LightList { lights: Vec<Light> });
+object!(IesList { lights: Vec<IesProfile> });
+object!(IesProfile { name: Option<String>, uri: Option<String>, buffer_view: Option<usize> });
 object!(VariantList { variants: Vec<Variant> });
 object!(Variant { name: String });
 
@@ -84,12 +88,15 @@ object!(Node {
 object!(NodeExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     light: Option<NodeLight>,
+    #[serde(rename = "EXT_lights_ies")]
+    ies: Option<NodeIes>,
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     instancing: Option<Instancing>,
     #[serde(rename = "KHR_node_visibility")]
     visibility: Option<NodeVisibility>,
 });
 object!(NodeLight { light: Option<usize> });
+object!(NodeIes { light: Option<usize>, multiplier: f64 = 1.0, color: [f64; 3] = [1.0; 3] });
 object!(Instancing { attributes: BTreeMap<String, usize> });
 object!(NodeVisibility { visible: bool = true });
 

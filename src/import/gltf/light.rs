@@ -13,7 +13,7 @@ use super::json::Light;
 use crate::desc::{ConeDesc, DecayDesc, LightKind, ShapingDesc};
 
 /// Lumens of a watt, by which physical glTF units and radiometric ones are exchanged.
-const LUMENS_PER_WATT: f64 = 683.0;
+pub(super) const LUMENS_PER_WATT: f64 = 683.0;
 
 /// What `light` emits, or why it can't. `extras` are those of its node: the extension has no size for
 /// the sun, which stands there as `angle`, the full angle in radians (Blender's exporter writes an

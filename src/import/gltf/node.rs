@@ -21,6 +21,8 @@ pub(super) struct PlacedNode {
     pub place: Place,
     /// Name of the topmost ancestor.
     pub asset: Arc<str>,
+    /// How many ancestors it has.
+    pub depth: u32,
 }
 
 /// The scene's nodes, and the world transforms of all nodes, which skins use.
@@ -37,6 +39,7 @@ struct Visit {
     parent: Option<Arc<Ancestor>>,
     world: DAffine3,
     shown: bool,
+    depth: u32,
 }
 
 /// What children take from their parent.
@@ -77,7 +80,7 @@ impl Hierarchy {
     fn visit(&mut self, root: &Root, roots: &[usize], shown: bool, place: &Place, warnings: &mut Warnings) {
         let mut stack: Vec<Visit> = Vec::new();
         for &node in roots.iter().rev() {
-            stack.push(Visit { node, parent: None, world: DAffine3::IDENTITY, shown });
+            stack.push(Visit { node, parent: None, world: DAffine3::IDENTITY, shown, depth: 0 });
         }
         while let Some(visit) = stack.pop() {
             let Some(node) = root.nodes.get(visit.node) else {
@@ -108,12 +111,13 @@ impl Hierarchy {
             let asset = visit.parent.as_ref().map_or_else(|| name.clone(), |parent| parent.asset.clone());
             if shown {
                 let asset = asset.clone();
-                self.nodes.push(PlacedNode { node: visit.node, world, name, place: here, asset });
+                self.nodes.push(PlacedNode { node: visit.node, world, name, place: here, asset, depth: visit.depth });
             }
             if !node.children.is_empty() {
                 let parent = Arc::new(Ancestor { path, asset });
                 for &child in node.children.iter().rev() {
-                    stack.push(Visit { node: child, parent: Some(parent.clone()), world, shown });
+                    let parent = Some(parent.clone());
+                    stack.push(Visit { node: child, parent, world, shown, depth: visit.depth + 1 });
                 }
             }
         }

@@ -10,12 +10,15 @@ use super::super::ImportOptions;
 use super::accessor::Reader;
 use super::deform::SkinPose;
 use super::document::label;
+use super::extras::Penumbra;
 use super::json::{Material, Primitive};
+use super::lights::Lights;
+use super::links::Links;
 use super::mesh::{self, Job};
 use super::node::{self, Hierarchy, PlacedNode};
 use super::texture::{Lookup, TextureTable};
-use super::{camera, instancing, light, material};
-use crate::desc::{CameraDesc, InstanceDesc, LightDesc, LightLinks, MaterialDesc, MeshDesc, SceneDesc, Visibility};
+use super::{camera, instancing, material};
+use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, SceneDesc, Visibility};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::{DAffine3, DMat4, DVec3};
 
@@ -83,13 +86,23 @@ impl Builder<'_> {
             variants: root.extensions.variants.variants.iter().map(|v| v.name.clone()).collect(),
             ..SceneDesc::default()
         };
+        let mut lights = Lights::new(self.reader, self.base_dir, self.place, self.options.light_units);
+        let mut links = Links::default();
         for (i, node) in hierarchy.nodes.iter().enumerate() {
+            let penumbra = Penumbra::read(&root.nodes[node.node].extras, &node.place, warnings);
+            let (first_light, first_instance) = (scene.lights.len(), scene.instances.len());
             self.camera(node, &mut scene, warnings);
-            self.light(node, &mut scene, warnings);
+            lights.add(node, &penumbra, &mut scene, warnings);
             if let Some(state) = meshes.by_node[i] {
-                self.instances(node, &meshes.parts[state], &mut scene, warnings)?;
+                self.instances(node, &penumbra, &meshes.parts[state], &mut scene, warnings)?;
             }
+            let (lights, instances) = (first_light..scene.lights.len(), first_instance..scene.instances.len());
+            if penumbra.has_rules() && lights.is_empty() && instances.is_empty() {
+                warnings.push(&node.place, "extras.penumbra: the node has neither a mesh nor a light to apply to");
+            }
+            links.add(instances, lights, penumbra);
         }
+        links.resolve(&hierarchy.nodes, &mut scene, warnings);
         scene.meshes = meshes.meshes;
         Ok(scene)
     }
@@ -264,6 +277,7 @@ impl Builder<'_> {
     fn instances(
         &self,
         placed: &PlacedNode,
+        penumbra: &Penumbra,
         state: &State,
         scene: &mut SceneDesc,
         warnings: &mut Warnings,
@@ -299,8 +313,8 @@ impl Builder<'_> {
                     transform,
                     materials: vec![part.material],
                     object_index: placed.node as u32 + 1,
-                    visibility: Visibility::ALL,
-                    links: LightLinks::default(),
+                    visibility: penumbra.visible(Visibility::ALL),
+                    links: penumbra.links(),
                 });
             }
         }
@@ -327,25 +341,6 @@ impl Builder<'_> {
                 clip_far,
             }),
             Err(what) => warnings.push(&placed.place, format!("{what}; the camera is left out")),
-        }
-    }
-
-    fn light(&self, placed: &PlacedNode, scene: &mut SceneDesc, warnings: &mut Warnings) {
-        let root = self.reader.root;
-        let reference = root.nodes[placed.node].extensions.light.as_ref();
-        let Some(index) = reference.and_then(|reference| reference.light) else { return };
-        let lights = &root.extensions.lights.lights;
-        let Some(json) = lights.get(index) else {
-            warnings.push(&placed.place, format!("names light {index} of {}; it is left out", lights.len()));
-            return;
-        };
-        let extras = &root.nodes[placed.node].extras;
-        match light::kind(json, extras, self.options.light_units) {
-            Ok((kind, shaping, decay)) => {
-                let light = LightDesc::new(placed.name.clone(), placed.place.clone(), placed.world, kind);
-                scene.lights.push(LightDesc { shaping, decay, ..light });
-            }
-            Err(what) => warnings.push(&placed.place, format!("{what}; the light is left out")),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::document::label;
 use super::json::{Image, TextureInfo, Transform};
 use super::uri::{self, Target};
 use crate::desc::{ColorSpace, Filter, ImageDesc, TextureDesc, TextureRef, TextureTransform, Wrap};
-use crate::error::{Place, Warnings};
+use crate::error::{Error, Place, Warnings};
 use crate::import::image::decode_image;
 
 /// `GL_NEAREST` of WebGL, as samplers write it.
@@ -154,11 +154,12 @@ fn describe(reader: Reader<'_>, index: usize, image: u32, place: &Place) -> Text
     }
 }
 
-fn file_name(image: &Image) -> Option<&str> {
+pub(super) fn file_name(image: &Image) -> Option<&str> {
     image.uri.as_deref().filter(|uri| !uri.starts_with("data:")).map(|uri| uri.rsplit('/').next().unwrap_or(uri))
 }
 
-fn decode(
+/// The image `json` of that index. The error is a sentence without place.
+pub(super) fn decode(
     reader: Reader<'_>,
     index: usize,
     json: &Image,
@@ -172,12 +173,7 @@ fn decode(
         _ => format!("image_{index}").into(),
     };
     let hint = json.mime_type.as_deref();
-    let run = |bytes: &[u8], hint: Option<&str>| {
-        decode_image(bytes, hint, &name, place, color_space).map_err(|e| match e {
-            crate::error::Error::Invalid { what, .. } | crate::error::Error::Unsupported { what, .. } => what,
-            other => other.to_string(),
-        })
-    };
+    let run = |bytes: &[u8], hint: Option<&str>| decode_image(bytes, hint, &name, place, color_space).map_err(reason);
     match (&json.uri, json.buffer_view) {
         (Some(uri), _) => match uri::resolve(uri, base)? {
             Target::Data { bytes, mime } => run(&bytes, hint.or(Some(&mime))),
@@ -189,6 +185,14 @@ fn decode(
         },
         (None, Some(view)) => run(reader.buffers.view(reader.root, view)?.0, hint),
         (None, None) => Err("has neither a URI nor a buffer view".into()),
+    }
+}
+
+/// What is wrong, without the place.
+pub(super) fn reason(error: Error) -> String {
+    match error {
+        Error::Invalid { what, .. } | Error::Unsupported { what, .. } => what,
+        other => other.to_string(),
     }
 }
 

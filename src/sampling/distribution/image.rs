@@ -11,6 +11,9 @@ use rayon::prelude::*;
 /// Units of the whole, the resolution of the random numbers.
 const UNITS: u32 = 1 << 24;
 
+/// The largest place of a random number, in units.
+const LAST_UNIT: f64 = UNITS as f64 - 1e-6;
+
 /// Texels per entry of the index.
 const BLOCK: usize = 64;
 
@@ -35,6 +38,19 @@ pub struct ImageSample {
     pub p: [f32; 2],
     /// Density over the unit square, above 0; its mean over the square is 1.
     pub pdf: f32,
+}
+
+/// A texel, and where in it the random numbers point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Texel {
+    /// Column.
+    pub x: usize,
+    /// Row.
+    pub y: usize,
+    /// What is left of the random numbers, in [0, 1)².
+    pub within: [f64; 2],
+    /// Probability with which it is drawn, above 0.
+    pub pmf: f64,
 }
 
 impl Distribution2d {
@@ -72,16 +88,30 @@ impl Distribution2d {
     /// Draws a point by `u` in [0, 1)².
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> ImageSample {
-        let (y, v, row_units) = draw(&self.rows, unit(u[1]));
-        let unit = unit(u[0]);
-        let index = &self.index[y * self.blocks..(y + 1) * self.blocks];
-        let first = BLOCK * (index.partition_point(|&c| c <= unit) - 1);
-        let (x, w, texel_units) = draw(&self.row(y)[first..(first + BLOCK).min(self.width) + 1], unit);
-        let x = first + x;
+        // A number of 24 bits stands for the middle of its unit.
+        let Texel { x, y, within, pmf } = self.sample_texel(u.map(|u| f64::from(u) + 0.5 / f64::from(UNITS)));
         ImageSample {
-            p: [place(x, w, self.width), place(y, v, self.height)],
-            pdf: self.density(row_units, texel_units),
+            p: [place(x, within[0], self.width), place(y, within[1], self.height)],
+            pdf: (pmf * self.width as f64 * self.height as f64) as f32,
         }
+    }
+
+    /// Draws a texel by `u` in [0, 1)², for those who place the point in it themselves.
+    #[inline]
+    pub(super) fn sample_texel(&self, u: [f64; 2]) -> Texel {
+        let u = u.map(|u| (u * f64::from(UNITS)).clamp(0.0, LAST_UNIT));
+        let (y, v, row_units) = draw(&self.rows, u[1]);
+        let index = &self.index[y * self.blocks..(y + 1) * self.blocks];
+        let first = BLOCK * (index.partition_point(|&c| c <= u[0] as u32) - 1);
+        let (x, w, texel_units) = draw(&self.row(y)[first..(first + BLOCK).min(self.width) + 1], u[0]);
+        Texel { x: first + x, y, within: [w, v], pmf: probability(row_units, texel_units) }
+    }
+
+    /// Probability with which [`Distribution2d::sample_texel`] draws this texel.
+    #[inline]
+    pub(super) fn pmf(&self, x: usize, y: usize) -> f64 {
+        let row = self.row(y);
+        probability(self.rows[y + 1] - self.rows[y], row[x + 1] - row[x])
     }
 
     /// Density of [`Distribution2d::sample`] at a point of the unit square; points outside count
@@ -90,17 +120,11 @@ impl Distribution2d {
     pub fn pdf(&self, p: [f32; 2]) -> f32 {
         let x = ((p[0] * self.width as f32) as usize).min(self.width - 1);
         let y = ((p[1] * self.height as f32) as usize).min(self.height - 1);
-        let row = self.row(y);
-        self.density(self.rows[y + 1] - self.rows[y], row[x + 1] - row[x])
+        (self.pmf(x, y) * self.width as f64 * self.height as f64) as f32
     }
 
     fn row(&self, y: usize) -> &[u32] {
         &self.texels[y * (self.width + 1)..(y + 1) * (self.width + 1)]
-    }
-
-    fn density(&self, row_units: u32, texel_units: u32) -> f32 {
-        let scale = 1.0 / UNITS as f32;
-        (row_units as f32 * scale * self.height as f32) * (texel_units as f32 * scale * self.width as f32)
     }
 }
 
@@ -123,26 +147,25 @@ fn accumulate(weights: &[f64], cumulative: &mut [u32]) -> f64 {
     (total * largest).min(f64::MAX)
 }
 
-/// The unit that a random number in [0, 1) falls in.
 #[inline]
-fn unit(u: f32) -> u32 {
-    ((u * UNITS as f32) as u32).min(UNITS - 1)
+fn probability(row_units: u32, texel_units: u32) -> f64 {
+    let scale = 1.0 / f64::from(UNITS);
+    f64::from(row_units) * scale * (f64::from(texel_units) * scale)
 }
 
-/// Inverts a cumulative list: the index, the place within it in [0, 1) and its units.
+/// Inverts a cumulative list at `at` units: the index, the place within it in [0, 1) and its units.
 #[inline]
-fn draw(cumulative: &[u32], unit: u32) -> (usize, f32, u32) {
-    let index = cumulative.partition_point(|&c| c <= unit) - 1;
+fn draw(cumulative: &[u32], at: f64) -> (usize, f64, u32) {
+    let index = cumulative.partition_point(|&c| c <= at as u32) - 1;
     let units = cumulative[index + 1] - cumulative[index];
-    let within = ((unit - cumulative[index]) as f32 + 0.5) / units as f32;
-    (index, within, units)
+    (index, (at - f64::from(cumulative[index])) / f64::from(units), units)
 }
 
 /// The coordinate at `within` of cell `index` of `count`, never rounded into another cell.
 #[inline]
-fn place(index: usize, within: f32, count: usize) -> f32 {
+fn place(index: usize, within: f64, count: usize) -> f32 {
     let end = (index + 1) as f32 / count as f32;
-    ((index as f32 + within) / count as f32).min(end.next_down())
+    (((index as f64 + within) / count as f64) as f32).min(end.next_down())
 }
 
 #[cfg(test)]

@@ -5,13 +5,19 @@
 
 mod cone;
 mod disk;
+mod elliptic_cone;
 mod hemisphere;
+mod spherical_rect;
+mod spherical_triangle;
 mod triangle;
 
 pub use cone::{one_minus_cos, pdf_cone, sample_cone};
 pub use disk::{PDF_DISK, sample_disk};
+pub use elliptic_cone::EllipticCone;
 pub use hemisphere::{
     PDF_UNIFORM_HEMISPHERE, PDF_UNIFORM_SPHERE, pdf_cosine_hemisphere, sample_cosine_hemisphere,
     sample_uniform_hemisphere, sample_uniform_sphere,
 };
+pub use spherical_rect::SphericalRect;
+pub use spherical_triangle::{SphericalTriangle, solid_angle_of_triangle};
 pub use triangle::sample_triangle;

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::emissive::Emissive;
 use super::geometry::Geometry;
+use super::lamp;
 use super::links::Links;
-use super::{emissive, lamp};
 use crate::desc::{LightDesc, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
 use crate::light::{Light, Rules, Seen};
@@ -42,6 +43,7 @@ pub fn prepare(
             lights.push(Light { emitter, rules: rules(&light.links, light.visibility) });
         }
     }
+    let mut emissive = Emissive::new(materials, textures);
     for (instance, &placed) in geometry.instances.iter_mut().zip(&geometry.placed) {
         let of = &desc.instances[placed as usize];
         if !instance.materials.iter().any(|&m| materials[m as usize].emits()) {
@@ -50,7 +52,7 @@ pub fn prepare(
         let rules = rules(&of.links, of.visibility);
         instance.rules = Some(Box::new(rules.clone()));
         let mesh = &geometry.meshes[instance.mesh as usize];
-        if let Some(light) = emissive::prepare(instance, mesh, materials, textures) {
+        if let Some(light) = emissive.light(instance, mesh) {
             instance.light = Some(lights.len() as u32);
             lights.push(Light { emitter: light.into(), rules });
         }

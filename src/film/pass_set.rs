@@ -1,0 +1,383 @@
+//! The passes that one render is asked for, and what they call for.
+
+use std::collections::BTreeSet;
+use std::fmt::{self, Write};
+use std::sync::Arc;
+
+use super::pass::{GROUP, PASSES, Pass};
+use super::quantity::{Quantities, Quantity};
+
+/// What of a row is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Choice {
+    /// Nothing.
+    Nothing,
+    /// The pass, of a row of groups that of every group.
+    All,
+    /// Of a row of groups those of some groups.
+    Groups(BTreeSet<Arc<str>>),
+}
+
+/// The passes of one render, and through them what has to be accumulated and computed.
+///
+/// Which light groups there are is the scene's to say: until [`PassSet::resolve`] has been told, the
+/// set has no passes of groups.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassSet {
+    /// By row of [`PASSES`].
+    choices: Vec<Choice>,
+    /// Light groups whose sums are kept; those of `choices` are among them.
+    groups: Vec<Arc<str>>,
+    quantities: Quantities,
+}
+
+/// One pass of a set.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen<'a> {
+    /// Its row.
+    pub pass: &'static Pass,
+    /// Index and name of the light group, for a row of groups.
+    group: Option<(usize, &'a str)>,
+}
+
+impl Chosen<'_> {
+    /// Name as `--passes` takes it.
+    pub fn name(&self) -> String {
+        self.fill(self.pass.name, |group| group.to_owned())
+    }
+
+    /// Name of the layer; a dot in the name of a light group becomes `_`, as it ends a part of a
+    /// channel's name.
+    pub fn layer(&self) -> String {
+        self.fill(self.pass.layer, layer_name)
+    }
+
+    /// Index in [`PassSet::groups`], for a row of groups.
+    pub fn group_index(&self) -> Option<usize> {
+        self.group.map(|(index, _)| index)
+    }
+
+    fn fill(&self, template: &str, name: impl Fn(&str) -> String) -> String {
+        self.group.map_or_else(|| template.to_owned(), |(_, group)| template.replace(GROUP, &name(group)))
+    }
+}
+
+/// The name of a light group as a part of a layer's.
+fn layer_name(group: &str) -> String {
+    group.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect()
+}
+
+impl fmt::Display for PassSet {
+    /// As [`PassSet::parse`] takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut names = Vec::new();
+        for (pass, choice) in PASSES.iter().zip(&self.choices) {
+            match (choice, pass.group_prefix()) {
+                (Choice::Nothing, _) => {}
+                (Choice::All, None) => names.push(pass.name.to_owned()),
+                (Choice::All, Some(prefix)) => names.push(format!("{prefix}*")),
+                (Choice::Groups(groups), prefix) => {
+                    names.extend(groups.iter().map(|group| format!("{}{group}", prefix.unwrap_or_default())));
+                }
+            }
+        }
+        f.write_str(&names.join(","))
+    }
+}
+
+impl Default for PassSet {
+    /// Combined alone.
+    fn default() -> Self {
+        Self::parse("combined").unwrap_or_else(|_| Self::all())
+    }
+}
+
+impl PassSet {
+    /// Every pass there is, those of every light group included.
+    pub fn all() -> Self {
+        Self::from_choices(vec![Choice::All; PASSES.len()], Vec::new())
+    }
+
+    /// A comma-separated list of names, or `all`. An empty list is Combined alone. In the rows of
+    /// groups the group's name stands for `<group>`, or `*` for every group.
+    ///
+    /// # Errors
+    /// A message that names the unknown pass and those there are.
+    pub fn parse(list: &str) -> Result<Self, String> {
+        let mut choices = vec![Choice::Nothing; PASSES.len()];
+        for name in list.split(',').map(str::trim).filter(|name| !name.is_empty()) {
+            if name.eq_ignore_ascii_case("all") {
+                return Ok(Self::all());
+            }
+            let (row, group) = find(name).ok_or_else(|| unknown(name))?;
+            match (group, &mut choices[row]) {
+                (None | Some("*"), choice) => *choice = Choice::All,
+                (Some(_), Choice::All) => {}
+                (Some(group), Choice::Groups(groups)) => _ = groups.insert(group.into()),
+                (Some(group), choice) => *choice = Choice::Groups(BTreeSet::from([group.into()])),
+            }
+        }
+        if choices.iter().all(|choice| *choice == Choice::Nothing) {
+            choices[0] = Choice::All;
+        }
+        Ok(Self::from_choices(choices, Vec::new()))
+    }
+
+    /// The set for a scene with these light groups: `*` and `all` become the passes of each of them.
+    ///
+    /// # Errors
+    /// A message that names a group that was asked for and is not there, with those that are; two
+    /// groups whose layers would have the same name; a set of which nothing is left.
+    pub fn resolve(&self, groups: &[Arc<str>]) -> Result<Self, String> {
+        let mut choices = self.choices.clone();
+        let mut kept = BTreeSet::new();
+        for (pass, choice) in PASSES.iter().zip(&mut choices) {
+            if pass.group_prefix().is_none() || *choice == Choice::Nothing {
+                continue;
+            }
+            let chosen = match choice {
+                Choice::Groups(asked) => asked.iter().map(|name| known(name, groups)).collect::<Result<_, _>>()?,
+                _ => groups.iter().cloned().collect::<BTreeSet<_>>(),
+            };
+            kept.extend(chosen.iter().cloned());
+            *choice = if chosen.is_empty() { Choice::Nothing } else { Choice::Groups(chosen) };
+        }
+        if choices.iter().all(|choice| *choice == Choice::Nothing) {
+            return Err("the scene has no light groups".to_owned());
+        }
+        let kept: Vec<Arc<str>> = kept.into_iter().collect();
+        for (i, a) in kept.iter().enumerate() {
+            if let Some(b) = kept[..i].iter().find(|b| layer_name(b) == layer_name(a)) {
+                return Err(format!("light groups '{b}' and '{a}' would share the layer Combined_{}", layer_name(a)));
+            }
+        }
+        Ok(Self::from_choices(choices, kept))
+    }
+
+    fn from_choices(choices: Vec<Choice>, groups: Vec<Arc<str>>) -> Self {
+        let asked = PASSES.iter().zip(&choices).filter(|(_, choice)| **choice != Choice::Nothing);
+        let quantities = asked.flat_map(|(pass, _)| pass.needs).fold(Quantities::default(), |set, &q| set.with(q));
+        Self { choices, groups, quantities }
+    }
+
+    /// The passes, in the order of [`PASSES`]; of rows of groups those of [`PassSet::groups`].
+    pub fn iter(&self) -> impl Iterator<Item = Chosen<'_>> {
+        PASSES.iter().zip(&self.choices).flat_map(|(pass, choice)| {
+            let once = pass.group_prefix().is_none() && *choice == Choice::All;
+            let of_groups = self.groups.iter().enumerate().filter(move |(_, group)| match choice {
+                Choice::Groups(groups) => groups.contains(*group),
+                _ => false,
+            });
+            let once = once.then_some(Chosen { pass, group: None });
+            once.into_iter().chain(of_groups.map(move |(i, group)| Chosen { pass, group: Some((i, group)) }))
+        })
+    }
+
+    /// Names of the light groups whose sums are kept, in the order of their indices.
+    pub fn groups(&self) -> &[Arc<str>] {
+        &self.groups
+    }
+
+    /// What the film accumulates of the light group of that index.
+    pub(super) fn group_quantities(&self, group: usize) -> Quantities {
+        let of_group = self.iter().filter(|chosen| chosen.group_index() == Some(group));
+        of_group.flat_map(|chosen| chosen.pass.needs).fold(Quantities::default(), |set, &q| set.with(q))
+    }
+
+    /// What the film accumulates.
+    pub fn quantities(&self) -> Quantities {
+        self.quantities
+    }
+
+    /// True where some pass needs `q`.
+    pub fn needs(&self, q: Quantity) -> bool {
+        self.quantities.contains(q)
+    }
+
+    fn needs_any(&self, list: &[Quantity]) -> bool {
+        list.iter().any(|&q| self.needs(q))
+    }
+
+    /// Ambient-occlusion rays are called for.
+    pub fn needs_ao(&self) -> bool {
+        self.needs(Quantity::Ao)
+    }
+
+    /// Direct light has to be kept with and without its shadows.
+    pub fn needs_shadow(&self) -> bool {
+        use Quantity::*;
+        self.needs_any(&[Unshadowed, IrradianceUnshadowed, GroupUnshadowed, GroupIrradianceUnshadowed])
+    }
+
+    /// The albedo-free pair of irradiances has to be computed too, for surfaces without diffuse albedo.
+    pub fn needs_irradiance(&self) -> bool {
+        self.needs_any(&[Quantity::IrradianceUnshadowed, Quantity::GroupIrradianceUnshadowed])
+    }
+
+    /// An extra ray through the pixel's centre is called for.
+    pub fn needs_first_hit(&self) -> bool {
+        self.needs(Quantity::FirstHit)
+    }
+
+    /// Light has to be split by lobe class.
+    pub fn needs_split(&self) -> bool {
+        use Quantity::*;
+        self.needs_any(&[DiffuseDirect, DiffuseIndirect, GlossyDirect, GlossyIndirect])
+            || self.needs_any(&[TransmissionDirect, TransmissionIndirect])
+    }
+
+    /// The albedo of the first surface is called for, by lobe class.
+    pub fn needs_color(&self) -> bool {
+        self.needs_any(&[Quantity::DiffuseColor, Quantity::GlossyColor, Quantity::TransmissionColor])
+    }
+
+    /// Paths beyond the first surface are called for.
+    pub fn needs_indirect(&self) -> bool {
+        use Quantity::*;
+        self.needs_any(&[Combined, GroupCombined, DiffuseIndirect, GlossyIndirect, TransmissionIndirect])
+    }
+
+    /// Light arriving at surfaces is called for at all; without it no light needs to be sampled.
+    pub fn needs_light(&self) -> bool {
+        self.needs_indirect() || self.needs_split() || self.needs_shadow()
+    }
+
+    /// Names have to be hashed and ids kept.
+    pub fn needs_cryptomatte(&self) -> bool {
+        self.needs_any(&[Quantity::CryptoObject, Quantity::CryptoMaterial, Quantity::CryptoAsset])
+    }
+
+    /// Normal, albedo or depth for a denoiser are called for.
+    pub fn needs_denoising(&self) -> bool {
+        self.needs_any(&[Quantity::DenoisingNormal, Quantity::DenoisingAlbedo, Quantity::DenoisingDepth])
+    }
+}
+
+/// The row of a name, and the light group for a row of groups.
+fn find(name: &str) -> Option<(usize, Option<&str>)> {
+    let whole = PASSES.iter().position(|pass| pass.group_prefix().is_none() && pass.name.eq_ignore_ascii_case(name));
+    let of_group = || {
+        PASSES.iter().enumerate().find_map(|(row, pass)| {
+            let (prefix, group) = name.split_at_checked(pass.group_prefix()?.len())?;
+            let matches = !group.is_empty() && pass.group_prefix()?.eq_ignore_ascii_case(prefix);
+            matches.then_some((row, Some(group)))
+        })
+    };
+    whole.map(|row| (row, None)).or_else(of_group)
+}
+
+/// The group of the scene that `name` means: its name, or that of its layers.
+fn known(name: &str, groups: &[Arc<str>]) -> Result<Arc<str>, String> {
+    let exact = groups.iter().find(|group| ***group == *name);
+    let found = exact.or_else(|| groups.iter().find(|group| layer_name(group) == name));
+    found.cloned().ok_or_else(|| {
+        if groups.is_empty() {
+            return format!("there is no light group '{name}': the scene has no light groups");
+        }
+        format!("there is no light group '{name}'; the scene has: {}", groups.join(", "))
+    })
+}
+
+fn unknown(name: &str) -> String {
+    let mut message = format!("there is no pass '{name}'; there are: all");
+    for pass in PASSES {
+        let _ = write!(message, ", {}", pass.name);
+    }
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(list: &str) -> PassSet {
+        PassSet::parse(list).expect("known")
+    }
+
+    fn groups(names: &[&str]) -> Vec<Arc<str>> {
+        names.iter().map(|&name| name.into()).collect()
+    }
+
+    fn names(set: &PassSet) -> Vec<String> {
+        set.iter().map(|chosen| chosen.name()).collect()
+    }
+
+    #[test]
+    fn lists_are_parsed() {
+        assert_eq!(names(&set("")), ["combined"]);
+        assert_eq!(names(&set(" AO , combined,ao")), ["combined", "ao"]);
+        assert_eq!(names(&set("shadow")), ["shadow"]);
+        let all = set("ao,all").resolve(&groups(&["key"])).expect("there");
+        assert_eq!(names(&all).len(), PASSES.len());
+        assert_eq!(PassSet::default(), set("combined"));
+    }
+
+    #[test]
+    fn lists_come_back_as_they_are_typed() {
+        for list in ["combined,ao", "combined_fill,combined_key,shadow_*", "depth,shadow_a b.c"] {
+            assert_eq!(set(list).to_string(), list);
+        }
+        assert_eq!(set("shadow_key,Shadow_*,shadow_fill").to_string(), "shadow_*");
+        assert_eq!(set(&PassSet::all().to_string()), PassSet::all());
+    }
+
+    #[test]
+    fn an_unknown_pass_is_told_with_the_known() {
+        let message = PassSet::parse("ao,shadows").expect_err("unknown");
+        assert!(message.contains("'shadows'") && message.contains("shadow,") && message.contains("crypto_asset"));
+        assert!(PassSet::parse("shadow_").expect_err("no group").contains("shadow_<group>"));
+    }
+
+    #[test]
+    fn groups_are_those_of_the_scene() {
+        let there = groups(&["fill", "key", "rim.001"]);
+        let resolve = |list: &str| set(list).resolve(&there).expect("there");
+        let picked = resolve("shadow_key,combined_fill");
+        assert_eq!(names(&picked), ["combined_fill", "shadow_key"]);
+        assert_eq!(picked.groups(), &groups(&["fill", "key"])[..]);
+        assert_eq!(names(&resolve("ao,combined_*")), ["ao", "combined_fill", "combined_key", "combined_rim.001"]);
+        let layers: Vec<String> = resolve("shadow_rim.001").iter().map(|chosen| chosen.layer()).collect();
+        assert_eq!(layers, ["Shadow_rim_001"]);
+        assert_eq!(names(&resolve("shadow_rim_001")), ["shadow_rim.001"]);
+        assert!(resolve("ao,shadow").groups().is_empty());
+        assert_eq!(resolve("all").groups(), &there[..]);
+    }
+
+    #[test]
+    fn a_group_that_is_not_there_is_told_with_those_that_are() {
+        let list = set("combined,shadow_kye");
+        let message = list.resolve(&groups(&["key", "fill"])).expect_err("unknown");
+        assert_eq!(message, "there is no light group 'kye'; the scene has: key, fill");
+        let none = "the scene has no light groups";
+        assert!(list.resolve(&[]).expect_err("none").ends_with(none));
+        assert_eq!(set("shadow_*").resolve(&[]).expect_err("nothing left"), none);
+        assert_eq!(names(&set("ao,shadow_*").resolve(&[]).expect("ao is left")), ["ao"]);
+        assert!(set("combined_*").resolve(&groups(&["a.b", "a_b"])).expect_err("one layer").contains("'a_b'"));
+    }
+
+    #[test]
+    fn absent_passes_are_absent_work() {
+        let combined = set("combined");
+        assert!(combined.needs_light() && combined.needs_indirect());
+        assert!(!combined.needs_ao() && !combined.needs_shadow() && !combined.needs_first_hit());
+        assert!(!combined.needs_split() && !combined.needs_color() && !combined.needs_cryptomatte());
+        let ao = set("ao,depth");
+        assert!(ao.needs_ao() && ao.needs_first_hit() && !ao.needs_light());
+        let shadow = set("shadow");
+        assert!(shadow.needs_shadow() && shadow.needs_irradiance() && !shadow.needs_indirect());
+        assert!(!set("unshadowed").needs_irradiance());
+    }
+
+    #[test]
+    fn passes_of_groups_call_for_what_their_sums_need() {
+        let there = groups(&["fill", "key"]);
+        let shadow = set("shadow_key").resolve(&there).expect("there");
+        assert!(shadow.needs_shadow() && shadow.needs_irradiance() && shadow.needs_light());
+        assert!(!shadow.needs_indirect() && !shadow.needs(Quantity::DiffuseDirect));
+        assert_eq!(shadow.groups().len(), 1);
+        let combined = set("combined_key").resolve(&there).expect("there");
+        assert!(combined.needs_indirect() && combined.needs_light() && !combined.needs_shadow());
+        let nothing = set("ao,shadow_*").resolve(&[]).expect("ao");
+        assert!(!nothing.needs_light() && !nothing.needs_irradiance());
+    }
+}

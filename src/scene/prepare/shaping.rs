@@ -1,0 +1,103 @@
+//! Shaping and decay of a light, its bad numbers mended.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::lamp::proportions;
+use super::mend::Mended;
+use crate::desc::{ConeDesc, DecayDesc, DecayLaw, IesRef, LightDesc, SceneDesc};
+use crate::light::{Cone, Decay, Falloff, Ies, Profile, Shaping};
+use crate::math::DMat3;
+
+/// Sharpest focus: a cone of about a tenth of a degree.
+const SHARPEST_FOCUS: f64 = 1e6;
+
+/// The profile of `light`, whose orthonormal axes in render space are `axes`: `Some(None)` where it has
+/// neither shaping nor decay, `None` where they leave no light.
+pub fn profile(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -> Option<Option<Arc<Profile>>> {
+    let decay = decay(light.decay, mended);
+    let of = &light.shaping;
+    let matrix = light.transform.matrix3;
+    let focus = mended.clamped("focus", of.focus, [0.0, SHARPEST_FOCUS]);
+    let shaping = Shaping {
+        cone: of.cone.map(|cone| self::cone(cone, mended)),
+        stretch: matches!(of.cone, Some(ConeDesc::Blend { .. })).then(|| proportions(matrix)).flatten(),
+        focus,
+        focus_tint: of.focus_tint.map(|tint| mended.clamped("focus tint", tint, [0.0, f64::from(f32::MAX)])),
+        ies: of.ies.and_then(|ies| self::ies(desc, ies, mended)),
+    };
+    if shaping.cone.is_none() && focus == 0.0 && shaping.ies.is_none() && decay == Decay::PHYSICAL {
+        return Some(None);
+    }
+    let profile = Profile::new(axes, shaping, decay);
+    if profile.peak().is_black() {
+        mended.note("its shaping leaves no light");
+        return None;
+    }
+    Some(Some(Arc::new(profile)))
+}
+
+fn cone(cone: ConeDesc, mended: &mut Mended) -> Cone {
+    const SHARE: [f64; 2] = [0.0, 1.0];
+    match cone {
+        ConeDesc::Ramp { inner, outer } => {
+            let outer = half_angle(outer, mended);
+            Cone::ramp(mended.clamped("inner cone angle", inner, [0.0, outer]), outer)
+        }
+        ConeDesc::Blend { angle, blend } => {
+            Cone::blend(half_angle(angle, mended), mended.clamped("cone blend", blend, SHARE))
+        }
+        ConeDesc::Soft { angle, softness } => {
+            Cone::soft(half_angle(angle, mended), mended.clamped("cone softness", softness, SHARE))
+        }
+    }
+}
+
+/// No number is no cone.
+fn half_angle(angle: f64, mended: &mut Mended) -> f64 {
+    if angle.is_nan() {
+        mended.note("its cone angle is NaN: taken as 180 degrees");
+        return PI;
+    }
+    mended.clamped("cone angle", angle, [0.0, PI])
+}
+
+fn ies(desc: &SceneDesc, of: IesRef, mended: &mut Mended) -> Option<Ies> {
+    let source = &desc.ies[of.profile as usize];
+    let mut scale = of.angle_scale;
+    if !scale.is_finite() {
+        mended.note(format!("its IES angle scale is {scale}: taken as 0"));
+        scale = 0.0;
+    }
+    let ies = Ies::new(&source.vertical, &source.horizontal, &source.candela, scale, of.keep_power);
+    if ies.is_none() {
+        mended.note(format!("IES profile \"{}\" gives no light: shines without it", source.name));
+    }
+    ies
+}
+
+fn decay(of: DecayDesc, mended: &mut Mended) -> Decay {
+    let smooth = mended.clamped("decay smoothing", of.smooth, [0.0, f64::MAX]);
+    let mut range = of.range;
+    if range.is_nan() || range <= 0.0 {
+        mended.note(format!("its range is {range}: taken as endless"));
+        range = f64::INFINITY;
+    }
+    let falloff = match of.law {
+        DecayLaw::Constant => Falloff::Constant,
+        DecayLaw::Linear => Falloff::Linear,
+        DecayLaw::Quadratic => Falloff::Quadratic,
+        DecayLaw::Polynomial { kc, kl, kq } => polynomial([kc, kl, kq], mended),
+    };
+    Decay { falloff, smooth, range }
+}
+
+fn polynomial(terms: [f64; 3], mended: &mut Mended) -> Falloff {
+    let sum: f64 = terms.iter().map(|term| term.max(0.0)).sum();
+    if terms.iter().any(|term| term.is_nan()) || !(sum > 0.0 && sum.is_finite()) {
+        mended.note("its decay is no polynomial that falls off: taken as quadratic");
+        return Falloff::Quadratic;
+    }
+    let [kc, kl, kq] = terms.map(|term| mended.clamped("decay term", term, [0.0, f64::MAX]));
+    Falloff::Polynomial { kc, kl, kq }
+}
