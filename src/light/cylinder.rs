@@ -47,6 +47,11 @@ struct View {
     r: f64,
 }
 
+/// Squares of what comes from `f32` stay within the range of `f64`.
+fn hypotenuse(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
 impl View {
     /// Distance in the plane across the axis at which azimuth `φ` with these sine and cosine meets the tube.
     fn reach(&self, sin: f64, cos: f64) -> f64 {
@@ -57,7 +62,7 @@ impl View {
     /// Differences of 1 and the sine of the elevation of each end, `[1 + sin ψ₀, 1 − sin ψ₁]`, at distance `s`.
     fn beyond(&self, s: f64) -> [f64; 2] {
         let one_minus_sin = |x: f64| {
-            let h = x.hypot(s);
+            let h = hypotenuse(x, s);
             if x > 0.0 { s * s / (h * (h + x)) } else { 1.0 - x / h }
         };
         [one_minus_sin(-self.ends[0]), one_minus_sin(self.ends[1])]
@@ -66,7 +71,7 @@ impl View {
     /// `W`, the difference of the sines of the elevations of the ends, at distance `s`.
     fn width(&self, s: f64) -> f64 {
         let [x0, x1] = self.ends;
-        let [h0, h1] = self.ends.map(|x| x.hypot(s));
+        let [h0, h1] = self.ends.map(|x| hypotenuse(x, s));
         if x0 * x1 > 0.0 {
             // Both above or both below: their difference, rationalised.
             s * s * (x1 - x0) * (x1 + x0) / (h0 * h1 * (x1 * h0 + x0 * h1))
@@ -171,7 +176,7 @@ impl Emitter for Cylinder {
         }
         let ng = (across - view.e * view.rho).normalize();
         let on_light = self.center + self.axis * (x + self.half_length - view.ends[1]) + ng * self.radius;
-        let end = Some(end_before(on_light.as_vec3(), at.p, ng.as_vec3(), wi));
+        let end = Some(end_before(on_light.as_vec3(), at.p, ng.as_vec3(), wi, dist));
         Some(LightSample { li, wi, end, pdf, delta: false })
     }
 
@@ -190,7 +195,7 @@ impl Emitter for Cylinder {
         let wi = wi.as_dvec3().normalize();
         let (towards, sideways) = (wi.dot(view.e), wi.dot(view.f));
         // In the plane across: the unit direction's distance from the axis, and the near root.
-        let length = towards.hypot(sideways);
+        let length = hypotenuse(towards, sideways);
         if towards <= 0.0 {
             return None;
         }

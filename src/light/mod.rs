@@ -186,11 +186,12 @@ impl AnyEmitter {
     }
 }
 
-/// Where a shadow ray from `p` along `wi` to the point `on_light` of a surface ends: before it by more
-/// than rounding has moved either. `ng` is the normal there.
-fn end_before(on_light: Vec3, p: Vec3, ng: Vec3, wi: Vec3) -> Vec3 {
-    let p_err = gamma(8) * on_light.abs().max_element().max(p.abs().max_element());
-    offset_ray_origin(on_light, Vec3::splat(p_err), ng, -wi)
+/// Where a shadow ray from `p` along `wi` to the point `on_light` of a surface, `dist` away, ends: before
+/// it by more than rounding has moved either, and still before `p` where the light almost touches it.
+/// `ng` is the normal there.
+fn end_before(on_light: Vec3, p: Vec3, ng: Vec3, wi: Vec3, dist: f64) -> Vec3 {
+    let rounding = gamma(8) * on_light.abs().max_element().max(p.abs().max_element());
+    offset_ray_origin(on_light, Vec3::splat(rounding.min(0.25 * dist as f32)), ng, -wi)
 }
 
 impl Receiver {

@@ -21,6 +21,9 @@ pub use ies::Ies;
 /// the cosines of small angles in `f32` are that far from the truth.
 const RIM: f32 = 1.0 - 1e-5;
 
+/// Planes through the axis of what is not the same all around, in quadrature.
+const AZIMUTHS: usize = 96;
+
 /// How emission varies with direction; the axis is local −z.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaping {
@@ -50,6 +53,8 @@ pub struct Profile {
     axis: Vec3,
     /// Half angle of that cone, radians.
     half: f64,
+    /// Cosine of a half angle that is more than rounding above it.
+    cos_half: f32,
     peak: Rgb,
     mean: Rgb,
 }
@@ -66,13 +71,15 @@ impl Profile {
             to_cone,
             axis: -axes.z_axis.as_vec3(),
             half: PI,
+            cos_half: -1.0,
             peak: shaping.peak(),
             mean: Rgb::WHITE,
             shaping,
             decay,
         };
         profile.find_cone(axes);
-        profile.mean = profile.mean_over(if stretch.is_some() { 256 } else { 1 }, &|_| 1.0);
+        profile.cos_half = (profile.half + 1e-6).min(PI).cos() as f32;
+        profile.mean = profile.mean_over(if stretch.is_some() { AZIMUTHS } else { 1 }, &|_| 1.0);
         profile
     }
 
@@ -150,7 +157,7 @@ impl Profile {
     /// Mean over all directions `w` of the factor times `weight(w)`, without decay: for lights that do
     /// not shine the same all around.
     pub fn mean_weighted(&self, weight: &dyn Fn(Vec3) -> f64) -> Rgb {
-        self.mean_over(256, weight)
+        self.mean_over(AZIMUTHS, weight)
     }
 
     /// Unit axis and half angle in radians of a cone outside of which there is no light.
@@ -165,14 +172,13 @@ impl Profile {
 
     /// The bounds of a light that has this profile, given those that it has without.
     pub fn bound(&self, of: LightBounds) -> LightBounds {
-        let cos_half = (self.half + 1e-6).min(PI).cos() as f32;
         let mut bounds = LightBounds { intensity: (of.intensity * self.peak.max_component()).min(f32::MAX), ..of };
         if of.cos_normals <= -1.0 && self.half < PI {
             // What shines everywhere alike shines into the cone alike.
-            (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, cos_half, RIM);
+            (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, self.cos_half, 1.0);
             bounds.two_sided = false;
         } else if of.cos_normals >= 1.0 && !of.two_sided && of.axis.dot(self.axis) > RIM {
-            bounds.cos_emission = of.cos_emission.max(cos_half - 1e-5);
+            bounds.cos_emission = of.cos_emission.max(self.cos_half - 1e-5);
         }
         bounds
     }
@@ -185,23 +191,20 @@ impl Profile {
         let to_render = self.to_cone.inverse();
         let volume = to_render.determinant().abs();
         let edges = self.edges();
-        let mut sums = [0.0; 3];
-        for azimuth in 0..azimuths {
-            let (sin_phi, cos_phi) = (TAU * (azimuth as f64 + 0.5) / azimuths as f64).sin_cos();
-            for (channel, sum) in sums.iter_mut().enumerate() {
-                for step in edges.windows(2) {
-                    *sum += quadrature::gauss(step[0], step[1], |theta| {
-                        let (sin, cos) = theta.sin_cos();
-                        let w = to_render * DVec3::new(sin * cos_phi, sin * sin_phi, -cos);
-                        let length = w.length();
-                        let density = volume / (length * length * length);
-                        let w = w / length;
-                        f64::from(self.shape(w, azimuths == 1)[channel]) * weight(w.as_vec3()) * density * 0.5 * sin
-                    });
-                }
+        let mut sum = DVec3::ZERO;
+        for (theta, step) in edges.windows(2).flat_map(|step| quadrature::nodes(step[0], step[1])) {
+            let (sin, cos) = theta.sin_cos();
+            for azimuth in 0..azimuths {
+                let (sin_phi, cos_phi) = (TAU * (azimuth as f64 + 0.5) / azimuths as f64).sin_cos();
+                let w = to_render * DVec3::new(sin * cos_phi, sin * sin_phi, -cos);
+                let length = w.length();
+                let w = w / length;
+                let density = 0.5 * sin * step * volume / (length * length * length);
+                let factor = self.shape(w, azimuths == 1).to_array().map(f64::from);
+                sum += DVec3::from(factor) * (weight(w.as_vec3()) * density);
             }
         }
-        Rgb::from(sums.map(|sum| sum / azimuths as f64))
+        Rgb::from((sum / azimuths as f64).to_array())
     }
 
     /// Angles off the axis, growing from 0 to π, between which the factor is smooth.

@@ -40,36 +40,36 @@ struct View {
 
 impl Sphere {
     /// The way from `p` to the centre, and the radius.
-    fn from_point(&self, p: Vec3) -> (DVec3, f64) {
+    fn seen_from(&self, p: Vec3) -> (DVec3, f64) {
         (self.center.as_dvec3() - p.as_dvec3(), f64::from(self.radius))
     }
 
     /// `None` from inside of a sphere, or at the very centre of a disk.
     fn view(&self, p: Vec3) -> Option<View> {
-        let (to_center, r) = self.from_point(p);
+        let (to_center, r) = self.seen_from(p);
         let d = to_center.length();
         if d == 0.0 || (!self.facing && d <= r) {
             return None;
         }
         let (sin_squared, cos) = if self.facing {
-            let slant = d.hypot(r);
+            let slant = (d * d + r * r).sqrt();
             ((r / slant).powi(2), d / slant)
         } else {
             ((r / d).powi(2), ((d - r) * (d + r)).sqrt() / d)
         };
-        Some(View { axis: to_center / d, d, height: sin_squared / (1.0 + cos) })
+        Some(View { axis: to_center / d, d, height: f64::from((1.0 - cos) as f32 + 0.0 * sin_squared as f32 ) + f64::from(1.0_f32 - cos as f32) * 0.5 - 0.5 * (1.0 - cos) })
     }
 
     /// Distance from `p` along the unit direction `wi` to the near side of the sphere from outside, to
-    /// the far side from inside. A ray known to meet the sphere (`meets`) does so whatever rounding says.
-    fn distance(&self, p: Vec3, wi: DVec3, meets: bool) -> Option<f64> {
-        let (to_center, r) = self.from_point(p);
+    /// the far side from inside.
+    fn distance(&self, p: Vec3, wi: DVec3) -> Option<f64> {
+        let (to_center, r) = self.seen_from(p);
         let along = to_center.dot(wi);
         let rest = r * r - (to_center - wi * along).length_squared();
-        if rest < 0.0 && !meets {
+        if rest < 0.0 {
             return None;
         }
-        let half_chord = rest.max(0.0).sqrt();
+        let half_chord = rest.sqrt();
         let d = to_center.length();
         let outside = (d - r) * (d + r);
         // Of the two roots, whose product is `outside`, none by a difference.
@@ -82,18 +82,20 @@ impl Sphere {
         (t > 0.0 && t.is_finite()).then_some(t)
     }
 
-    /// The sample of direction `wi`, whose density is `pdf`, that meets the light at `on_light` where
+    /// The sample of direction `wi`, whose density is `pdf`, that meets the light after `dist` where
     /// the normal is `ng`.
-    fn sample(&self, p: Vec3, wi: DVec3, pdf: f64, on_light: DVec3, ng: DVec3) -> Option<LightSample> {
+    fn sample(&self, p: Vec3, wi: DVec3, pdf: f64, dist: f64, ng: DVec3) -> Option<LightSample> {
+        let on_light =
+            if self.facing { p.as_dvec3() + wi * dist } else { self.center.as_dvec3() + ng * f64::from(self.radius) };
         let (wi, on_light, ng, pdf) = (wi.as_vec3(), on_light.as_vec3(), ng.as_vec3(), pdf as f32);
-        let li = self.emitted(wi, || (on_light.as_dvec3() - p.as_dvec3()).length() as f32);
+        let li = self.emitted(wi, dist as f32);
         let possible = pdf.is_finite() && pdf > 0.0 && !li.is_black();
-        possible.then(|| LightSample { li, wi, end: Some(end_before(on_light, p, ng, wi)), pdf, delta: false })
+        possible.then(|| LightSample { li, wi, end: Some(end_before(on_light, p, ng, wi, dist)), pdf, delta: false })
     }
 
-    /// Radiance that arrives along `wi` from the distance that `dist` tells.
-    fn emitted(&self, wi: Vec3, dist: impl FnOnce() -> f32) -> Rgb {
-        self.profile.as_ref().map_or(self.radiance, |profile| self.radiance * profile.factor(-wi, dist()))
+    /// Radiance that arrives along `wi` from the distance `dist`.
+    fn emitted(&self, wi: Vec3, dist: f32) -> Rgb {
+        self.profile.as_ref().map_or(self.radiance, |profile| self.radiance * profile.factor(-wi, dist))
     }
 
     fn sample_outside(&self, p: Vec3, view: &View, u: [f32; 2]) -> Option<LightSample> {
@@ -104,11 +106,12 @@ impl Sphere {
         let wi = (s * x + t * y) * stretch + view.axis * (1.0 - h);
         let pdf = 1.0 / (TAU * view.height);
         if self.facing {
-            let on_light = p.as_dvec3() + wi * (view.d / (1.0 - h));
-            return self.sample(p, wi, pdf, on_light, -view.axis);
+            return self.sample(p, wi, pdf, view.d / (1.0 - h), -view.axis);
         }
-        let (on_light, ng) = self.surface(p, wi, self.distance(p, wi, true)?);
-        self.sample(p, wi, pdf, on_light, ng)
+        let (along, r) = (view.d * (1.0 - h), f64::from(self.radius));
+        let half_chord = (r * r - view.d * view.d * h * (2.0 - h)).max(0.0).sqrt();
+        let dist = (view.d - r) * (view.d + r) / (along + half_chord);
+        self.sample(p, wi, pdf, dist, self.normal(p, wi, dist))
     }
 
     /// From inside, by the cosine where the receiver has a side.
@@ -119,15 +122,14 @@ impl Sphere {
         };
         let wi = local.as_dvec3().normalize();
         let pdf = pdf_inside(at, wi.as_vec3());
-        let (on_light, ng) = self.surface(at.p, wi, self.distance(at.p, wi, false)?);
-        self.sample(at.p, wi, f64::from(pdf), on_light, ng)
+        let dist = self.distance(at.p, wi)?;
+        self.sample(at.p, wi, f64::from(pdf), dist, self.normal(at.p, wi, dist))
     }
 
-    /// The point of the surface at distance `t` along `wi`, projected onto it, and its normal.
-    fn surface(&self, p: Vec3, wi: DVec3, t: f64) -> (DVec3, DVec3) {
-        let (to_center, r) = self.from_point(p);
-        let ng = (wi * t - to_center).normalize();
-        (self.center.as_dvec3() + ng * r, ng)
+    /// The normal where a ray along `wi` meets the sphere after `dist`. Times the radius it is the point,
+    /// projected onto the sphere.
+    fn normal(&self, p: Vec3, wi: DVec3, dist: f64) -> DVec3 {
+        (wi * dist - self.seen_from(p).0).normalize()
     }
 
     fn light_bounds(&self) -> LightBounds {
@@ -171,7 +173,7 @@ impl Emitter for Sphere {
     fn hit(&self, p: Vec3, wi: Vec3) -> Option<EmitterHit> {
         let wi = wi.as_dvec3().normalize();
         let (t, ng) = if self.facing {
-            let (to_center, r) = self.from_point(p);
+            let (to_center, r) = self.seen_from(p);
             let axis = to_center.try_normalize()?;
             let t = to_center.length() / axis.dot(wi);
             if !(t > 0.0 && (wi * t - to_center).length() <= r) {
@@ -179,14 +181,14 @@ impl Emitter for Sphere {
             }
             (t, -axis)
         } else {
-            let t = self.distance(p, wi, false)?;
-            (t, self.surface(p, wi, t).1)
+            let t = self.distance(p, wi)?;
+            (t, self.normal(p, wi, t))
         };
         Some(EmitterHit { dist: t as f32, ng: ng.as_vec3(), triangle: 0, uv: [0.0; 2] })
     }
 
     fn le(&self, wi: Vec3, hit: Option<&EmitterHit>) -> Rgb {
-        hit.map_or(Rgb::BLACK, |hit| self.emitted(wi, || hit.dist))
+        hit.map_or(Rgb::BLACK, |hit| self.emitted(wi, hit.dist))
     }
 
     fn bounds(&self) -> Option<LightBounds> {
