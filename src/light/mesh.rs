@@ -81,6 +81,16 @@ impl MeshEmitters {
         Some(Self { mesh, emission, triangles, tree })
     }
 
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// How it emits.
+    pub fn emission(&self) -> &dyn Emission {
+        &*self.emission
+    }
+
     fn triangle_of(&self, item: u32) -> u32 {
         self.triangles.as_ref().map_or(item, |triangles| triangles[item as usize])
     }
@@ -145,6 +155,11 @@ impl MeshLight {
     /// The triangles, which other instances may share.
     pub fn emitters(&self) -> &Arc<MeshEmitters> {
         &self.emitters
+    }
+
+    /// Corners of triangle `index` of the mesh, render space.
+    pub fn corners(&self, index: u32) -> [Vec3; 3] {
+        self.triangle(index).p
     }
 
     /// The receiver in mesh space.

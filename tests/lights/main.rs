@@ -7,6 +7,7 @@ mod chi2;
 mod cylinder;
 mod laws;
 mod mesh;
+
 mod point;
 mod profile;
 mod quadrature;

@@ -3,9 +3,11 @@
 
 use std::sync::Arc;
 
-use penumbra::light::{Distant, Dome, Light, LightBounds, LightSet, LightTree, Point, Receiver, Rules, Strategy};
-use penumbra::light::{Emitter, Profile};
-use penumbra::math::{Bounds, Rgb, Vec3};
+use penumbra::light::{
+    Cone, Cylinder, Decay, Disk, Distant, Dome, Emitter, Flat, Light, LightBounds, LightSet, LightTree, Point, Profile,
+    Receiver, Rect, Rules, Shaping, Sphere, Spread, Strategy,
+};
+use penumbra::math::{Bounds, DMat3, Rgb, Vec3};
 
 use crate::random::{Random, range};
 
@@ -76,7 +78,7 @@ fn irradiance(light: &LightBounds, at: &Receiver) -> f64 {
 #[test]
 fn the_importance_of_a_tree_is_about_the_irradiance() {
     let mut random = Random::new(2);
-    let (mut ratios, mut logs) = (Vec::new(), 0.0);
+    let (mut ratios, mut dim, mut logs) = (Vec::new(), Vec::new(), 0.0);
     for _ in 0..2000 {
         let facing = random.direction();
         let spread = random.range(0.0, 3.1);
@@ -93,23 +95,28 @@ fn the_importance_of_a_tree_is_about_the_irradiance() {
         let p = random.direction() * random.range(2.0, 20.0);
         let at = Receiver { n: Some(random.direction()), ..Receiver::everywhere(p) };
         let exact: f64 = lights.iter().map(|light| irradiance(light, &at)).sum();
-        // Where all of the lights face away, nearly, there is nothing to compare.
         let most: f64 = lights.iter().map(|light| f64::from(light.intensity)).sum::<f64>() / p.length_squared() as f64;
-        if exact > 0.02 * most {
-            let ratio = f64::from(tree.importance(&at)) / exact;
+        let ratio = f64::from(tree.importance(&at)) / exact;
+        // Where nearly all of the lights face away, an importance that is too high costs little.
+        if exact > 0.2 * most {
             ratios.push(ratio);
             logs += ratio.ln().abs();
+        } else if exact > 0.02 * most {
+            dim.push(ratio);
         }
     }
-    let (low, high) = range(ratios.iter().copied());
+    let ((low, high), (low_dim, high_dim)) = (range(ratios.iter().copied()), range(dim.iter().copied()));
     let mean = (logs / ratios.len() as f64).exp();
-    println!("{} cases: {low} to {high}, mean factor {mean}", ratios.len());
-    assert!(ratios.len() > 500 && low > 0.3 && high < 8.0 && mean < 1.5, "{low} to {high}, mean factor {mean}");
+    println!("{}: {low} to {high}, mean factor {mean}; {}: {low_dim} to {high_dim}", ratios.len(), dim.len());
+    assert!(ratios.len() > 200 && low > 0.7 && high < 5.0 && mean < 1.5, "{low} to {high}, mean factor {mean}");
+    assert!(dim.len() > 200 && low_dim > 0.5 && high_dim < 20.0, "{low_dim} to {high_dim}");
 }
 
+/// Odds of all items and of choosing none: a box may promise light that none of the boxes in it has.
 #[test]
 fn the_tree_draws_by_the_odds_that_it_tells() {
     let mut random = Random::new(3);
+    let (mut certain, mut total) = (0, 0);
     for count in [1, 2, 8, 9, 65, 700] {
         let lights: Vec<LightBounds> = (0..count).map(|_| random.light(1.0)).collect();
         let tree = LightTree::new(&lights).unwrap();
@@ -117,14 +124,12 @@ fn the_tree_draws_by_the_odds_that_it_tells() {
             let at = random.receiver(1.5);
             let pmfs: Vec<f64> = (0..count).map(|i| f64::from(tree.pmf(&at, i))).collect();
             let sum: f64 = pmfs.iter().sum();
-            let arrives = (0..count as usize).any(|i| irradiance(&lights[i], &at) > 0.0 && pmfs[i] > 0.0);
-            assert!(sum == 0.0 && !arrives || (sum - 1.0).abs() < 1e-4, "{count}: {sum}");
             let n = 1 << 16;
             let mut seen = vec![0_u32; count as usize];
-            let mut rest = 0.0;
+            let (mut rest, mut none) = (0.0, 0_u32);
             for i in 0..n {
                 let Some(chosen) = tree.sample(&at, (i as f32 + 0.5) / n as f32) else {
-                    assert_eq!(sum, 0.0);
+                    none += 1;
                     continue;
                 };
                 assert_eq!(chosen.pmf, tree.pmf(&at, chosen.item));
@@ -136,9 +141,14 @@ fn the_tree_draws_by_the_odds_that_it_tells() {
             for (i, (&seen, pmf)) in seen.iter().zip(&pmfs).enumerate() {
                 assert!((f64::from(seen) - pmf * f64::from(n)).abs() <= 2.0 + 1e-4 * f64::from(n), "{count}, {i}");
             }
-            assert!(sum == 0.0 || (rest / f64::from(n) - 0.5).abs() < 0.05, "{count}: {rest}");
+            let none = f64::from(none) / f64::from(n);
+            assert!((sum + none - 1.0).abs() < 1e-3, "{count}: {sum} and {none}");
+            assert!(none == 1.0 || (rest / f64::from(n) / (1.0 - none) - 0.5).abs() < 0.05, "{count}: {rest}");
+            total += 1;
+            certain += u32::from(sum > 0.98 || sum == 0.0);
         }
     }
+    assert!(certain > total * 9 / 10, "{certain} of {total}");
 }
 
 #[test]
@@ -177,7 +187,7 @@ fn odds_keep_their_size_over_all_orders_of_magnitude() {
             assert!(chosen.pmf > 0.0 && chosen.pmf == tree.pmf(&at, chosen.item));
         }
         let sum: f64 = (0..3000).map(|i| f64::from(tree.pmf(&at, i))).sum();
-        assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+        assert!(sum > 0.9 && sum < 1.0 + 1e-4, "{sum}");
     }
 }
 
@@ -229,7 +239,7 @@ fn rays_meet_the_boxes_that_they_meet_one_by_one() {
             assert!(hits.is_none() || *seen, "{light:?} {p} {wi}");
         }
     }
-    assert!(met > 1000, "{met}");
+    assert!(met > 200, "{met}");
     // Few boxes are visited in vain.
     let mut visited = 0;
     for _ in 0..1000 {
@@ -337,29 +347,85 @@ fn nothing_is_chosen_where_nothing_arrives() {
     assert_eq!((one.pmf(&up, 0), one.pmf(&down, 0)), (0.0, 1.0));
 }
 
+/// Axes with z along a random direction.
+fn axes(random: &mut Random) -> DMat3 {
+    let z = random.direction().as_dvec3().normalize();
+    let x = z.any_orthonormal_vector();
+    DMat3::from_cols(x, z.cross(x), z)
+}
+
+/// One of each kind of lamp, anywhere and of any strength.
+fn lamp(random: &mut Random, i: usize) -> Light {
+    let (p, size) = (random.in_box(2.0), random.range(0.01, 0.5));
+    let radiance = Rgb::splat(10.0_f32.powf(random.range(-20.0, 10.0)));
+    let half = f64::from(random.range(0.01, 1.5));
+    let cone = Shaping { cone: Some(Cone::blend(half, 0.5)), ..Shaping::default() };
+    let range = Decay { range: 2.0, ..Decay::PHYSICAL };
+    let profile = match i % 3 {
+        0 => Some(Arc::new(Profile::new(axes(random), cone, Decay::PHYSICAL))),
+        1 => Some(Arc::new(Profile::new(axes(random), Shaping::default(), range))),
+        _ => None,
+    };
+    let flat = Flat {
+        two_sided: i % 2 == 0,
+        spread: if i % 4 == 0 { Spread::new(half) } else { Spread::FULL },
+        profile: profile.clone(),
+        ..Flat::new(p.as_dvec3(), axes(random), radiance)
+    };
+    let size = f64::from(size);
+    match random.index(5) {
+        0 => Point { p, intensity: radiance, profile }.into(),
+        1 => Sphere { center: p, radius: size as f32, radiance, facing: i % 2 == 0, profile }.into(),
+        2 => Rect::new(flat, [size, 0.3 * size]).into(),
+        3 => Disk::new(flat, [size, 0.5 * size]).into(),
+        _ => {
+            let (axis, size) = (random.direction(), size as f32);
+            Cylinder::new(p, axis, 0.2 * size, size, radiance, profile).into()
+        }
+    }
+}
+
+#[test]
+fn rays_meet_the_lamps_that_they_meet_one_by_one() {
+    let mut random = Random::new(10);
+    for count in [3, 60, 1000] {
+        let set = LightSet::new((0..count).map(|i| lamp(&mut random, i)).collect(), SCENE, 1);
+        let mut met = 0;
+        for _ in 0..3000 {
+            let (p, wi) = (random.in_box(2.5), random.direction());
+            let range = [random.range(0.0, 1.0), random.range(1.0, 5.0)];
+            let mut along = Vec::new();
+            set.lamps_along(p, wi, range, |i, _, hit| along.push((i, *hit)));
+            along.sort_by_key(|&(i, _)| i);
+            let one_by_one: Vec<_> = (0..count as u32)
+                .filter_map(|i| Some((i, set.get(i).emitter.hit(p, wi)?)))
+                .filter(|(_, hit)| hit.dist >= range[0] && hit.dist < range[1])
+                .collect();
+            assert_eq!(along, one_by_one);
+            met += along.len();
+        }
+        assert!(met > count, "{met}");
+    }
+}
+
 #[test]
 fn a_light_that_sends_something_is_chosen_in_any_scene() {
     let mut random = Random::new(9);
     let mut arrived = 0;
     for count in [4, 31, 34, 300] {
         for strategy in [Strategy::Tree, Strategy::Power, Strategy::Uniform] {
-            let profile = Some(Arc::new(Profile { range: 2.0 }));
-            let mut lights: Vec<Light> = (0..count)
-                .map(|i| {
-                    let intensity = 10.0_f32.powf(random.range(-20.0, 10.0));
-                    let profile = if i % 3 == 0 { profile.clone() } else { None };
-                    Light::from(Point { profile, ..point(random.in_box(2.0), intensity) })
-                })
-                .collect();
+            let mut lights: Vec<Light> = (0..count).map(|i| lamp(&mut random, i)).collect();
             lights.push(Distant::new(random.direction(), 0.0, Rgb::splat(1e-3)).into());
             let set = LightSet::chosen_by(strategy, lights, SCENE, 1);
             for _ in 0..100 {
                 let at = random.receiver(2.0);
                 for (i, light) in set.iter().enumerate() {
-                    let Some(sample) = light.emitter.sample_li(&at, 0.5, [0.5; 2]) else { continue };
-                    if at.n.is_none_or(|n| n.dot(sample.wi) > 0.0) {
+                    let u = [random.unit(), random.unit()];
+                    let Some(sample) = light.emitter.sample_li(&at, 0.5, u) else { continue };
+                    if at.n.is_none_or(|n| n.dot(sample.wi) > 0.0) && !sample.li.is_black() {
                         arrived += 1;
-                        assert!(set.pmf(&at, i as u32) > 0.0, "{strategy:?}, {count}, {i}");
+                        let light = &light.emitter;
+                        assert!(set.pmf(&at, i as u32) > 0.0, "{strategy:?}, {count}: {light:?}, {at:?}, {sample:?}");
                     }
                 }
             }
