@@ -152,7 +152,7 @@ fn meshes_hold() {
 /// Rays through the hills meet one triangle of those that light sampling may choose from.
 #[test]
 fn a_mesh_of_many_triangles_holds_wherever_it_is_placed() {
-    let (points, triangles) = hills(12);
+    let (points, triangles) = hills(4);
     let shared = Arc::new(emitters(points, triangles, Constant(Rgb::splat(L as f32))));
     let turn = Mat3::from_euler(glam::EulerRot::XYZ, 0.2, 0.4, -0.3);
     let at = |m: Mat3| {
@@ -291,8 +291,8 @@ impl Emission for Some3 {
 
 #[test]
 fn triangles_that_do_not_emit_are_left_out() {
-    let (points, triangles) = hills(6);
-    let lit = vec![3, 17, 40, 41, 70];
+    let (points, triangles) = hills(3);
+    let lit = vec![3, 8, 9, 14];
     let light = MeshLight::new(Arc::new(emitters(points, triangles, Some3(lit.clone()))), Affine3A::IDENTITY).unwrap();
     let (p, n) = (Vec3::new(0.1, -0.6, 0.2), Vec3::Y);
     let irradiance =
@@ -300,7 +300,7 @@ fn triangles_that_do_not_emit_are_left_out() {
     hold(&[around(Case {
         hit: Some(hit),
         radiance: Some(radiance),
-        ..Case::new("five of 72", light.clone(), p, n, irradiance)
+        ..Case::new("four of 18", light.clone(), p, n, irradiance)
     })]);
     let at = Receiver { n: Some(n), ..Receiver::everywhere(p) };
     let dark = EmitterHit { dist: 1.0, ng: Vec3::Y, triangle: 4, uv: [0.3; 2] };
