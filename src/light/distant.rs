@@ -1,5 +1,6 @@
 //! Light from infinitely far away: a direction, or a disk of directions with constant radiance
-//! `L = E / (π sin²(angle / 2))`.
+//! `L = E / (π sin²(angle / 2))`, so that `E cos θ` arrives as long as all of the disk is above the
+//! horizon (UsdLux `sizeFactor`, Cycles).
 
 use std::f32::consts::PI;
 
@@ -11,6 +12,9 @@ use crate::sampling::warp;
 /// than 1% of the disk.
 const MIN_HALF_ANGLE: f64 = 1e-5;
 
+/// More than rounding takes from a cosine.
+const SLACK: f32 = 1e-6;
+
 /// A sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distant {
@@ -20,6 +24,7 @@ pub struct Distant {
     radiance: Rgb,
     /// Sine of the half angle; 0 for a single direction.
     sin_half: f32,
+    cos_half: f32,
     /// `1 − cos` of the half angle.
     height: f32,
 }
@@ -28,12 +33,21 @@ impl Distant {
     /// A sun in the unit direction `to_light`, `angle` the full angle of its disk in radians (0 for
     /// a delta, at most π), `irradiance` on a surface that faces it.
     pub fn new(to_light: Vec3, angle: f32, irradiance: Rgb) -> Self {
-        let half = f64::from(angle.clamp(0.0, std::f32::consts::PI)) * 0.5;
-        let half = if half < MIN_HALF_ANGLE { 0.0 } else { half };
-        let radiance = if half > 0.0 { irradiance / (PI * sqr(half.sin() as f32)) } else { Rgb::BLACK };
-        let sin_half = half.sin() as f32;
-        let height = warp::one_minus_cos(sqr(sin_half));
-        Self { frame: Frame::from_z(to_light), irradiance, radiance, sin_half, height }
+        let half = f64::from(angle.clamp(0.0, PI)) * 0.5;
+        let half = if half >= MIN_HALF_ANGLE { half.min(0.5 * std::f64::consts::PI) } else { 0.0 };
+        // In f64: squares of small sines lose nothing, and bright suns stay finite as long as they can.
+        let disk = std::f64::consts::PI * half.sin() * half.sin();
+        let of_disk = |e: f32| (f64::from(e) / disk).min(f64::from(f32::MAX)) as f32;
+        let radiance = if half > 0.0 { irradiance.map(of_disk) } else { Rgb::BLACK };
+        let height = (2.0 * (0.5 * half).sin().powi(2)) as f32;
+        Self {
+            frame: Frame::from_z(to_light),
+            irradiance,
+            radiance,
+            sin_half: half.sin() as f32,
+            cos_half: half.cos() as f32,
+            height,
+        }
     }
 
     fn is_delta(&self) -> bool {
@@ -73,11 +87,18 @@ impl Emitter for Distant {
         None
     }
 
-    fn importance(&self, _at: &Receiver) -> f32 {
-        self.irradiance.luminance()
+    /// The largest that a direction of the disk can bring, so that none above the horizon is lost.
+    fn importance(&self, at: &Receiver) -> f32 {
+        let cos = at.n.map_or(1.0, |n| {
+            let cos = n.dot(self.frame.n);
+            let sin = n.cross(self.frame.n).length();
+            let largest = if cos >= self.cos_half { 1.0 } else { cos * self.cos_half + sin * self.sin_half };
+            (largest + SLACK).clamp(0.0, 1.0)
+        });
+        self.irradiance.luminance() * cos
     }
 
     fn power(&self, scene: Bounds) -> f32 {
-        PI * sqr(scene.radius()) * self.irradiance.luminance()
+        (PI * sqr(scene.radius()) * self.irradiance.luminance()).min(f32::MAX)
     }
 }

@@ -19,9 +19,10 @@ use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
 use crate::math::{Bounds, Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 use crate::sampling::warp;
 
-/// The share of samples that go to all directions alike, where light samples stand alone: at least so
-/// many, at most the rest, whatever the estimate of what they bring.
-const LEAST_SHARE: f32 = 0.25;
+/// Where light samples stand alone, so many parts of eight go to all directions alike, at least. Eighths
+/// divide runs of 8 samples of a pattern exactly, and are rounded towards the bright part, whose shadows
+/// have the sharper edges.
+const FEWEST_EIGHTHS: f32 = 1.0;
 
 /// One step of a random number of 24 bits.
 const STEP: f64 = 1.0 / 16_777_216.0;
@@ -73,7 +74,7 @@ impl Dome {
             (true, Some(_)) => {
                 let [all, bright] = self.irradiances(at);
                 let share = if all > 0.0 { (all - bright) / all } else { 0.5 };
-                share.clamp(LEAST_SHARE, 1.0 - LEAST_SHARE)
+                (8.0 * share).floor().clamp(FEWEST_EIGHTHS, 8.0 - FEWEST_EIGHTHS) / 8.0
             }
         }
     }

@@ -27,7 +27,7 @@ pub struct Shaping {
     /// A cone outside of which there is no light.
     pub cone: Option<Cone>,
     /// Light to render space with its scale, for a cone that the scale distorts (Cycles' spot); not
-    /// singular.
+    /// singular, of the order of 1.
     pub stretch: Option<DMat3>,
     /// UsdLux focus: the factor `max(cos θ, 0)^focus`; 0 for none.
     pub focus: f64,
@@ -58,10 +58,7 @@ impl Profile {
     /// The profile of a light whose orthonormal axes in render space are the columns of `axes`.
     pub fn new(axes: DMat3, shaping: Shaping, decay: Decay) -> Self {
         let to_local = axes.transpose();
-        // Of the scale only the proportions count; one matrix for huge and tiny lights alike.
-        let stretch =
-            shaping.stretch.map(|m| m * (1.0 / m.to_cols_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()))));
-        let stretch = stretch.filter(|&m| shaping.cone.is_some() && !keeps_angles(m));
+        let stretch = shaping.stretch.filter(|&m| shaping.cone.is_some() && !keeps_angles(m));
         let shaping = Shaping { stretch, ..shaping };
         let to_cone = stretch.map_or(to_local, |m| m.inverse());
         let mut profile = Self {

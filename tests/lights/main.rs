@@ -5,12 +5,17 @@
 #[path = "../support/chi2.rs"]
 mod chi2;
 mod cylinder;
+mod disk;
+mod distant;
+mod dome;
 mod laws;
 mod mesh;
-
+mod plane;
 mod point;
 mod profile;
 mod quadrature;
 mod random;
+mod rect;
 mod select;
 mod sphere;
+mod sun;

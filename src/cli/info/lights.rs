@@ -154,30 +154,33 @@ pub fn line(light: &Value) -> String {
         Some(list) => list.iter().map(number).collect::<Vec<_>>().join(between),
         None => number(value),
     };
-    let mut say = |text: String| line += &format!(", {text}");
-    let has = |key: &str| light.get(key);
-    has("radius_m").map(|v| say(format!("radius {} m", number(v))));
-    has("length_m").map(|v| say(format!("length {} m", number(v))));
-    has("size_m").map(|v| say(format!("{} m", list(v, " x "))));
-    has("angle_deg").filter(|v| v.as_f64() != Some(0.0)).map(|v| say(format!("{} degrees wide", number(v))));
-    has("facing").map(|_| say("faces whoever looks".into()));
-    has("two_sided").map(|_| say("two-sided".into()));
-    has("spread_deg").map(|v| say(format!("spread {} degrees", number(v))));
-    has("image").map(|v| say(format!("image {v}")));
-    has("cone_deg").map(|v| say(format!("cone {} degrees", list(v, " to "))));
-    has("cone_blend").map(|v| say(format!("blend {}", number(v))));
-    has("cone_softness").map(|v| say(format!("softness {}", number(v))));
-    has("focus").map(|v| say(format!("focus {}", number(v))));
-    has("ies").map(|v| say(format!("IES profile {v}")));
-    has("decay").map(|v| say(format!("decay {}", v.as_str().map_or_else(|| list(v, ", "), String::from))));
-    has("smooth_m2").map(|v| say(format!("smoothed by {} m2", number(v))));
-    has("range_m").map(|v| say(format!("range {} m", number(v))));
-    has("group").map(|v| say(format!("group {v}")));
-    has("cast_shadow").map(|_| say("casts no shadow".into()));
-    has("receivers").map(|v| say(format!("lights {}", objects(v))));
-    has("blockers").map(|v| say(format!("stopped by {}", objects(v))));
+    let mut say = |key: &str, words: &dyn Fn(&Value) -> String| {
+        if let Some(value) = light.get(key) {
+            line += &format!(", {}", words(value));
+        }
+    };
+    say("radius_m", &|v| format!("radius {} m", number(v)));
+    say("length_m", &|v| format!("length {} m", number(v)));
+    say("size_m", &|v| format!("{} m", list(v, " x ")));
+    say("angle_deg", &|v| format!("{} degrees wide", number(v)));
+    say("facing", &|_| "faces whoever looks".into());
+    say("two_sided", &|_| "two-sided".into());
+    say("spread_deg", &|v| format!("spread {} degrees", number(v)));
+    say("image", &|v| format!("image {v}"));
+    say("cone_deg", &|v| format!("cone {} degrees", list(v, " to ")));
+    say("cone_blend", &|v| format!("blend {}", number(v)));
+    say("cone_softness", &|v| format!("softness {}", number(v)));
+    say("focus", &|v| format!("focus {}", number(v)));
+    say("ies", &|v| format!("IES profile {v}"));
+    say("decay", &|v| format!("decay {}", v.as_str().map_or_else(|| list(v, ", "), String::from)));
+    say("smooth_m2", &|v| format!("smoothed by {} m2", number(v)));
+    say("range_m", &|v| format!("range {} m", number(v)));
+    say("group", &|v| format!("group {v}"));
+    say("cast_shadow", &|_| "casts no shadow".into());
+    say("receivers", &|v| format!("lights {}", objects(v)));
+    say("blockers", &|v| format!("stopped by {}", objects(v)));
     for (ray, seen) in light["visibility"].as_object().into_iter().flatten() {
-        say(format!("{} by {ray}", if *seen == json!(true) { "seen" } else { "not seen" }));
+        line += &format!(", {} by {ray}", if *seen == json!(true) { "seen" } else { "not seen" });
     }
     line
 }

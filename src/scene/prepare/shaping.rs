@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::lamp::is_regular;
+use super::lamp::proportions;
 use super::mend::Mended;
 use crate::desc::{ConeDesc, DecayDesc, DecayLaw, IesRef, LightDesc, SceneDesc};
 use crate::light::{Cone, Decay, Falloff, Ies, Profile, Shaping};
@@ -21,7 +21,7 @@ pub fn profile(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Me
     let focus = mended.clamped("focus", of.focus, [0.0, SHARPEST_FOCUS]);
     let shaping = Shaping {
         cone: of.cone.map(|cone| self::cone(cone, mended)),
-        stretch: matches!(of.cone, Some(ConeDesc::Blend { .. })).then_some(matrix).filter(|&m| is_regular(m)),
+        stretch: matches!(of.cone, Some(ConeDesc::Blend { .. })).then(|| proportions(matrix)).flatten(),
         focus,
         focus_tint: of.focus_tint.map(|tint| mended.clamped("focus tint", tint, [0.0, f64::from(f32::MAX)])),
         ies: of.ies.and_then(|ies| self::ies(desc, ies, mended)),
