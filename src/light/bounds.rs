@@ -73,8 +73,13 @@ impl LightBounds {
     }
 
     pub(super) fn lobe(&self) -> Lobe {
-        let isotropic = if self.cos_normals <= -1.0 { 1.0 } else { 0.0 };
+        let isotropic = if self.is_even() { 1.0 } else { 0.0 };
         self.lobe_of(self.intensity, 1.0 - isotropic, isotropic)
+    }
+
+    /// True for what shines the same into all directions in which it shines: points and spots.
+    pub(super) fn is_even(&self) -> bool {
+        self.cos_normals <= -1.0 || self.cos_emission > 0.999
     }
 
     /// The lobe of many lights with these bounds, whose intensities sum to `intensity`.
@@ -135,8 +140,8 @@ impl Lobe {
         let received = mean_positive(above, extent(at.n) + slack) * per_dist;
         let received = if at.any_side { 1.0 } else { received };
 
-        // Heights of the receiver above emitters: the mean, and those above the normals that are nearest
-        // to its direction and farthest off, the box's extent along them included.
+        // Cosines at emitters: the mean, and those of the normals that are nearest to the receiver's
+        // direction and farthest off, the box's extent along them included.
         let along = -dot(self.axis, d);
         let two_sided = self.intensity < 0.0;
         let along = if two_sided { along.abs() } else { along };
@@ -147,10 +152,16 @@ impl Lobe {
         let farthest = if along <= -dist * self.cos_normals { -dist } else { middle - tilt };
         let reach = smaller(extent(self.axis) + radius * sin_normals, radius);
         let reach = if self.cos_normals < 0.0 { radius } else { reach } + slack;
-        let mean = along * self.mean_normal;
-        let front = mean_positive(mean, nearest + reach - mean);
-        let back = mean_positive(-mean, mean - farthest + reach);
-        let emitted = (if two_sided { front + back } else { front }) * per_dist + self.isotropic;
+        let top = larger((nearest + reach) * per_dist, 0.0);
+        let bottom = smaller((farthest - reach) * per_dist, 0.0);
+        let mean = smaller(larger(along * self.mean_normal * per_dist, bottom), top);
+        // The mean of the positive part is exact for even spread from bottom to top, and where all is at
+        // one end or none below 0; that of the negative part then follows.
+        let (front, back) = (top * (mean - bottom), -bottom * (top - mean));
+        let both = front * front + if two_sided { back * back } else { 0.0 };
+        let directed = both / larger((top - bottom) * (front + back), LEAST);
+        let emits = (top > 0.0) | (two_sided & (bottom < 0.0)) | (self.isotropic > 0.0);
+        let emitted = directed + self.isotropic;
 
         // Distance to the cone of emission: from its mantle, or its apex.
         let sin_cone = larger(1.0 - self.cos_cone * self.cos_cone, 0.0).sqrt();
@@ -158,7 +169,7 @@ impl Lobe {
         let outside = if along * self.cos_cone + off * sin_cone > 0.0 { outside } else { dist };
         let outside = if along + slack >= dist * self.cos_cone { 0.0 } else { outside };
 
-        let lit = (received > 0.0) & (emitted > 0.0) & (outside <= radius + slack) & (self.intensity != 0.0);
+        let lit = (received > 0.0) & emits & (outside <= radius + slack) & (self.intensity != 0.0);
         let weight = self.intensity.abs() * scale * received * emitted;
         if lit { larger(smaller(weight, MOST), LEAST) } else { 0.0 }
     }

@@ -81,6 +81,16 @@ impl MeshEmitters {
         Some(Self { mesh, emission, triangles, tree })
     }
 
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// How it emits.
+    pub fn emission(&self) -> &dyn Emission {
+        &*self.emission
+    }
+
     fn triangle_of(&self, item: u32) -> u32 {
         self.triangles.as_ref().map_or(item, |triangles| triangles[item as usize])
     }
@@ -145,6 +155,11 @@ impl MeshLight {
     /// The triangles, which other instances may share.
     pub fn emitters(&self) -> &Arc<MeshEmitters> {
         &self.emitters
+    }
+
+    /// Corners of triangle `index` of the mesh, render space.
+    pub fn corners(&self, index: u32) -> [Vec3; 3] {
+        self.triangle(index).p
     }
 
     /// The receiver in mesh space.
@@ -220,14 +235,20 @@ impl Triangle {
     }
 
     /// Where the ray from `p` along `w`, which meets the triangle but for rounding, does so.
-    fn barycentrics(&self, p: Vec3, w: DVec3) -> [f32; 3] {
+    fn barycentrics(&self, p: Vec3, w: DVec3) -> [f64; 3] {
         let [a, b, c] = self.p.map(|corner| corner.as_dvec3() - p.as_dvec3());
         // Volumes that the direction spans with two of the corners.
         let shares = [w.dot(b.cross(c)), w.dot(c.cross(a)), w.dot(a.cross(b))];
         let facing = self.cross.dot(a).signum();
         let shares = shares.map(|share| (share * facing).max(0.0));
         let sum: f64 = shares.iter().sum();
-        if sum > 0.0 { shares.map(|share| (share / sum) as f32) } else { [1.0 / 3.0; 3] }
+        if sum > 0.0 { shares.map(|share| share / sum) } else { [1.0 / 3.0; 3] }
+    }
+
+    /// From `p` to the point with the given barycentrics.
+    fn to(&self, p: Vec3, barycentrics: [f64; 3]) -> DVec3 {
+        let corners = self.p.map(|corner| corner.as_dvec3() - p.as_dvec3());
+        corners[0] * barycentrics[0] + corners[1] * barycentrics[1] + corners[2] * barycentrics[2]
     }
 
     fn area(&self) -> f64 {
@@ -236,10 +257,13 @@ impl Triangle {
 }
 
 impl Emitter for MeshLight {
-    fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+    fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
         let asked = self.asked(at);
         let tree = &self.emitters.tree;
-        let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(uc, &asked, TRIANGLE))?;
+        // A strip of the square for each triangle: its points are spread as well as all of them, which
+        // those picked by a number that is independent of the square would not be.
+        let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(u[0], &asked, TRIANGLE))?;
+        let u = [chosen.u, u[1]];
         let index = self.emitters.triangle_of(chosen.item);
         let triangle = self.triangle(index);
         if triangle.is_level_with(at.p) {
@@ -248,23 +272,19 @@ impl Emitter for MeshLight {
         let ng = triangle.cross.normalize_or_zero().as_vec3();
         let spherical = triangle.near(at.p).and_then(SphericalTriangle::new);
         let spherical = spherical.filter(|s| SOLID_ANGLES.contains(&s.solid_angle()));
-        let (barycentrics, direction) = match &spherical {
-            Some(spherical) => {
-                let w = spherical.sample(u);
-                (triangle.barycentrics(at.p, w), Some(w))
-            }
-            None => (sample_triangle(u), None),
+        let barycentrics = match &spherical {
+            Some(spherical) => triangle.barycentrics(at.p, spherical.sample(u)),
+            None => sample_triangle(u).map(f64::from),
         };
-        let [b0, b1, b2] = barycentrics;
-        let on_light = triangle.p[0] * b0 + triangle.p[1] * b1 + triangle.p[2] * b2;
-        let to_light = on_light - at.p;
-        let (wi, density) = match (direction, &spherical) {
-            (Some(w), Some(spherical)) => (w.as_vec3(), 1.0 / spherical.solid_angle()),
-            _ => {
-                let wi = to_light.as_dvec3().normalize_or_zero().as_vec3();
-                (wi, to_light.as_dvec3().length_squared() / (f64::from(ng.dot(wi).abs()) * triangle.area()))
-            }
+        let to_light = triangle.to(at.p, barycentrics);
+        let dist_squared = to_light.length_squared();
+        let wi = (to_light / dist_squared.sqrt()).as_vec3();
+        let on_light = (at.p.as_dvec3() + to_light).as_vec3();
+        let density = match &spherical {
+            Some(spherical) => 1.0 / spherical.solid_angle(),
+            None => dist_squared / (f64::from(ng.dot(wi).abs()) * triangle.area()),
         };
+        let [_, b1, b2] = barycentrics.map(|b| b as f32);
         let pdf = (density * f64::from(chosen.pmf)) as f32;
         let li = self.emitters.emission.radiance(index, [b1, b2]);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {

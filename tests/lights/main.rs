@@ -10,6 +10,7 @@ mod disk;
 mod distant;
 mod dome;
 mod laws;
+mod mesh;
 mod plane;
 mod point;
 mod profile;

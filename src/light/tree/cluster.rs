@@ -17,7 +17,7 @@ pub(super) struct Cluster {
     pub centers: Bounds,
     /// Sum of intensities.
     intensity: f64,
-    /// Of that, the intensity that has no direction.
+    /// Of that, the intensity without a cosine.
     isotropic: f64,
     /// Sum of normals times intensity.
     axis: [f64; 3],
@@ -49,7 +49,7 @@ impl Cluster {
         self.bounds = self.bounds.union(light.bounds);
         self.centers = self.centers.with_point(light.bounds.center());
         self.intensity += intensity;
-        self.isotropic += intensity - directed;
+        self.isotropic += if light.is_even() { intensity } else { intensity - directed };
         self.cos_emission = self.cos_emission.min(light.cos_emission);
         self.two_sided |= light.two_sided;
         self
@@ -110,8 +110,9 @@ impl Cluster {
 
     /// The same for the importance.
     pub fn lobe(&self, bounds: &LightBounds) -> Lobe {
-        let (mean_normal, isotropic) = (self.concentration() as f32, self.isotropic_share() as f32);
-        bounds.lobe_of(to_f32(self.intensity), mean_normal, isotropic)
+        let isotropic = self.isotropic_share();
+        let mean_normal = (1.0 - isotropic) * self.concentration();
+        bounds.lobe_of(to_f32(self.intensity), mean_normal as f32, isotropic as f32)
     }
 
     fn isotropic_share(&self) -> f64 {
