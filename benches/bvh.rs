@@ -175,9 +175,9 @@ fn time(rays: &[Ray], shoot: impl Fn(&Ray) -> bool) -> (f64, usize) {
 
 fn time_ours(bvh: &Bvh, set: &RaySet) -> f64 {
     if set.any {
-        time(&set.rays, |ray| bvh.any_hit(ray, u32::MAX)).0
+        time(&set.rays, |ray| bvh.any_hit(ray, u64::MAX)).0
     } else {
-        time(&set.rays, |ray| black_box(bvh.closest_hit(ray, u32::MAX)).is_some()).0
+        time(&set.rays, |ray| black_box(bvh.closest_hit(ray, u64::MAX)).is_some()).0
     }
 }
 
@@ -222,10 +222,10 @@ fn disagreements(set: &RaySet, ours: &Bvh, theirs: &EmbreeScene) -> (usize, usiz
     let (mut presence, mut distance) = (0, 0);
     for ray in &set.rays {
         if set.any {
-            presence += usize::from(ours.any_hit(ray, u32::MAX) != theirs.any(ray));
+            presence += usize::from(ours.any_hit(ray, u64::MAX) != theirs.any(ray));
             continue;
         }
-        match (ours.closest_hit(ray, u32::MAX).map(|h| h.t), theirs.closest(ray)) {
+        match (ours.closest_hit(ray, u64::MAX).map(|h| h.t), theirs.closest(ray)) {
             (Some(a), Some(b)) => {
                 let rounding = 1e-4 * b + 1e-6 * ray.o.abs().max_element();
                 distance += usize::from((a - b).abs() > rounding);

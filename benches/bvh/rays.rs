@@ -22,7 +22,7 @@ pub fn ray_sets(scene: &Scene, bvh: &Bvh) -> Vec<RaySet> {
     let count = primary.len();
     let points: Vec<(Vec3, Vec3)> = primary
         .iter()
-        .filter_map(|ray| bvh.closest_hit(ray, u32::MAX).map(|hit| surface_point(scene, ray, &hit)))
+        .filter_map(|ray| bvh.closest_hit(ray, u64::MAX).map(|hit| surface_point(scene, ray, &hit)))
         .collect();
     assert!(!points.is_empty(), "the camera sees nothing");
     let mut rng = Rng::new(5);

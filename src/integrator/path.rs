@@ -203,7 +203,7 @@ fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSa
     scene.lights.lamps_along(path.start, wi, segment, |i, light, hit| {
         let mut le = light.emitter.le(wi, Some(hit));
         if scene.effects.absorption {
-            le = le * transmitted(&path.media, hit.dist - segment[0]);
+            le *= transmitted(&path.media, hit.dist - segment[0]);
         }
         match &path.last {
             None if light.rules.seen.camera => {

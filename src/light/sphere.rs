@@ -57,7 +57,12 @@ impl Sphere {
         } else {
             ((r / d).powi(2), ((d - r) * (d + r)).sqrt() / d)
         };
-        Some(View { axis: to_center / d, d, height: f64::from((1.0 - cos) as f32 + 0.0 * sin_squared as f32 ) + f64::from(1.0_f32 - cos as f32) * 0.5 - 0.5 * (1.0 - cos) })
+        Some(View {
+            axis: to_center / d,
+            d,
+            height: f64::from((1.0 - cos) as f32 + 0.0 * sin_squared as f32) + f64::from(1.0_f32 - cos as f32) * 0.5
+                - 0.5 * (1.0 - cos),
+        })
     }
 
     /// Distance from `p` along the unit direction `wi` to the near side of the sphere from outside, to

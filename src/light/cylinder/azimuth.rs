@@ -27,7 +27,7 @@ impl Azimuth {
         let even = rim <= EVEN * middle && middle <= EVEN * rim;
         let density = (!even).then(|| std::array::from_fn(|k| width(max * node(k))));
         let possible = |density: &[f64; STEPS + 1]| density.iter().all(|d| d.is_finite() && *d > 0.0);
-        Self { max, density: density.filter(|d| possible(d) && false) }
+        Self { max, density: density.filter(possible) }
     }
 
     /// The azimuth of the uniform number `u` and its density.
