@@ -367,15 +367,15 @@ fn lamp(random: &mut Random, i: usize) -> Light {
         _ => None,
     };
     let flat = Flat {
-        two_sided: i % 2 == 0,
-        spread: if i % 4 == 0 { Spread::new(half) } else { Spread::FULL },
+        two_sided: i.is_multiple_of(2),
+        spread: if i.is_multiple_of(4) { Spread::new(half) } else { Spread::FULL },
         profile: profile.clone(),
         ..Flat::new(p.as_dvec3(), axes(random), radiance)
     };
     let size = f64::from(size);
     match random.index(5) {
         0 => Point { p, intensity: radiance, profile }.into(),
-        1 => Sphere { center: p, radius: size as f32, radiance, facing: i % 2 == 0, profile }.into(),
+        1 => Sphere { center: p, radius: size as f32, radiance, facing: i.is_multiple_of(2), profile }.into(),
         2 => Rect::new(flat, [size, 0.3 * size]).into(),
         3 => Disk::new(flat, [size, 0.5 * size]).into(),
         _ => {
