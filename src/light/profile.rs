@@ -175,7 +175,7 @@ impl Profile {
         let mut bounds = LightBounds { intensity: (of.intensity * self.peak.max_component()).min(f32::MAX), ..of };
         if of.cos_normals <= -1.0 && self.half < PI {
             // What shines everywhere alike shines into the cone alike.
-            (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, self.cos_half, 1.0);
+            (bounds.axis, bounds.cos_normals, bounds.cos_emission) = (self.axis, self.cos_half, RIM);
             bounds.two_sided = false;
         } else if of.cos_normals >= 1.0 && !of.two_sided && of.axis.dot(self.axis) > RIM {
             bounds.cos_emission = of.cos_emission.max(self.cos_half - 1e-5);

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
-use crate::math::{Bounds, DVec3, Frame, Rgb, Vec3};
+use crate::math::{Bounds, DVec3, Frame, Rgb, Vec3, orthonormal_pair};
 use crate::sampling::warp;
 
 /// A sphere of constant radiance.
@@ -57,12 +57,7 @@ impl Sphere {
         } else {
             ((r / d).powi(2), ((d - r) * (d + r)).sqrt() / d)
         };
-        Some(View {
-            axis: to_center / d,
-            d,
-            height: f64::from((1.0 - cos) as f32 + 0.0 * sin_squared as f32) + f64::from(1.0_f32 - cos as f32) * 0.5
-                - 0.5 * (1.0 - cos),
-        })
+        Some(View { axis: to_center / d, d, height: sin_squared / (1.0 + cos) })
     }
 
     /// Distance from `p` along the unit direction `wi` to the near side of the sphere from outside, to
@@ -107,7 +102,7 @@ impl Sphere {
         let [x, y] = warp::sample_disk(u).map(f64::from);
         let h = (x * x + y * y).min(1.0) * view.height;
         let stretch = (view.height * (2.0 - h)).sqrt();
-        let (s, t) = view.axis.any_orthonormal_pair();
+        let (s, t) = orthonormal_pair(view.axis);
         let wi = (s * x + t * y) * stretch + view.axis * (1.0 - h);
         let pdf = 1.0 / (TAU * view.height);
         if self.facing {

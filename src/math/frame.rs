@@ -2,8 +2,24 @@
 //!
 //! Tom Duff, James Burgess, Per Christensen, Christophe Hery, Andrew Kensler, Max Liani, Ryusuke
 //! Villemin: *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
+//!
+//! No frame is continuous over all directions. Theirs turns where a coordinate changes its sign: a line
+//! across floors and spheres at which the samples of a pixel fall into two halves, so that noise shows
+//! it. Here the turn is a small circle around straight down, where few normals and lights are.
 
-use super::Vec3;
+use super::{DVec3, Vec3};
+
+/// The frames turn where y falls below this.
+const DOWN: f64 = -0.9;
+
+/// Two unit vectors that make a right-handed frame with the unit vector `n`: [`Frame::from_z`] in `f64`.
+pub fn orthonormal_pair(n: DVec3) -> (DVec3, DVec3) {
+    let sign = if n.y < DOWN { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + n.y);
+    let b = n.z * n.x * a;
+    let s = DVec3::new(sign * b, -sign * n.z, 1.0 + sign * n.z * n.z * a);
+    (s, DVec3::new(sign + n.x * n.x * a, -n.x, b))
+}
 
 /// A right-handed orthonormal frame; local z is `n`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,14 +33,14 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame around the unit vector `n`, continuous but at `n.z = 0` crossing sign.
+    /// A frame around the unit vector `n`, which varies smoothly with it save at one circle around −y.
     pub fn from_z(n: Vec3) -> Self {
-        let sign = 1.0_f32.copysign(n.z);
-        let a = -1.0 / (sign + n.z);
-        let b = n.x * n.y * a;
+        let sign = if n.y < DOWN as f32 { -1.0 } else { 1.0 };
+        let a = -1.0 / (sign + n.y);
+        let b = n.z * n.x * a;
         Self {
-            s: Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-            t: Vec3::new(b, sign + n.y * n.y * a, -n.y),
+            s: Vec3::new(sign * b, -sign * n.z, 1.0 + sign * n.z * n.z * a),
+            t: Vec3::new(sign + n.x * n.x * a, -n.x, b),
             n,
         }
     }
@@ -64,6 +80,8 @@ mod tests {
             let r = (1.0 - z * z).sqrt();
             let phi = 2.399_963 * i as f32;
             let n = Vec3::new(r * phi.cos(), r * phi.sin(), z).normalize();
+            let (s, t) = orthonormal_pair(n.as_dvec3());
+            assert!((s.cross(t) - n.as_dvec3()).length() < 1e-6);
             for f in [Frame::from_z(n), Frame::from_z_and_tangent(n, Vec3::new(0.3, -0.2, 0.9))] {
                 assert!((f.s.cross(f.t) - f.n).length() < 1e-5);
                 assert!((f.s.length() - 1.0).abs() < 1e-5 && f.s.dot(f.n).abs() < 1e-5);

@@ -11,7 +11,7 @@ mod scalar;
 mod transform;
 
 pub use bounds::Bounds;
-pub use frame::Frame;
+pub use frame::{Frame, orthonormal_pair};
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;

@@ -30,9 +30,16 @@ pub struct SphericalTriangle {
 /// Adriaan van Oosterom and Jan Strackee, *The Solid Angle of a Plane Triangle*, IEEE Transactions on
 /// Biomedical Engineering 30(2), 1983.
 pub fn solid_angle_of_triangle([a, b, c]: [DVec3; 3]) -> f64 {
-    // The triple product of the edges is that of the corners, with less cancellation.
-    let volume = a.dot((b - a).cross(c - a)).abs();
-    2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    // The triple product of the edges is that of the corners: exact for a small triangle, whose corners
+    // cancel, but not for a wide flat one, whose corners do not.
+    let (ab, ac) = (b - a, c - a);
+    let small = ab.length_squared().max(ac.length_squared()) < 0.25;
+    let volume = if small { a.dot(ab.cross(ac)) } else { a.dot(b.cross(c)) };
+    // 1 + a·b + b·c + c·a by sums of corners, of which nearly opposite ones cancel exactly.
+    let sums = [a + b, b + c, c + a];
+    let [s, t, u] = sums.map(DVec3::length_squared);
+    let rest = if s.min(u) <= t { sums[2].dot(sums[0]) } else { sums[0].dot(sums[1]) };
+    2.0 * volume.abs().atan2(rest)
 }
 
 impl SphericalTriangle {
@@ -163,7 +170,7 @@ mod tests {
                     let normal = p.cross(q);
                     assert!(facing * w.dot(normal) >= -1e-12, "{corners:?}: {u:?}");
                 }
-                on_side += u64::from(facing * w.dot(b.cross(middle)) <= 0.0);
+                on_side += u64::from(facing * w.dot(b.cross(middle)) >= 0.0);
             }
             let found = on_side as f64 / n as f64;
             assert!((found - share).abs() < 2e-3, "{corners:?}: {found} instead of {share}");
