@@ -57,7 +57,7 @@ fn command() -> Command {
 mod scene {
     use std::path::{Path, PathBuf};
 
-    use clap::{Arg, value_parser};
+    use clap::{Arg, ArgAction, value_parser};
 
     use super::ArgMatches;
     use penumbra::desc::SceneDesc;
@@ -70,8 +70,12 @@ mod scene {
                 .value_name("SCENE")
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
-                .help("The scene: .gltf or .glb"),
-            Arg::new("variant").long("variant").value_name("NAME").help("Material variant of the file to use"),
+                .help("The scene: .usd, .usda, .usdc, .usdz, .gltf or .glb"),
+            Arg::new("variant")
+                .long("variant")
+                .value_name("NAME|/Prim{set=choice}")
+                .action(ArgAction::Append)
+                .help("Variant to use instead of the file's own choice; of USD any number"),
             Arg::new("light-units")
                 .long("light-units")
                 .value_name("UNITS")
@@ -98,8 +102,12 @@ mod scene {
             Some("raw") => LightUnits::Raw,
             _ => LightUnits::Spec,
         };
-        let options =
-            ImportOptions { frame, variant: args.get_one("variant").cloned(), light_units, ..ImportOptions::default() };
+        let options = ImportOptions {
+            frame,
+            variants: args.get_many("variant").into_iter().flatten().cloned().collect(),
+            light_units,
+            ..ImportOptions::default()
+        };
         let mut warnings = Warnings::new();
         let scene = import::scene(path(args), &options, &mut warnings)?;
         Ok((scene, warnings))

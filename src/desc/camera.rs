@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Motion;
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -20,6 +21,25 @@ pub struct CameraDesc {
     pub clip_near: f64,
     /// Nothing farther than this along the axis is seen; may be infinite.
     pub clip_far: f64,
+    /// How far the picture's centre is from the axis, in widths and heights of the authored frame.
+    pub shift: [f64; 2],
+    /// Its lens; `None` for a pinhole.
+    pub lens: Option<LensDesc>,
+    /// When the shutter opens and closes, in frames after the frame itself; both 0 for an instant.
+    pub shutter: [f64; 2],
+    /// Factor of the picture's radiance.
+    pub exposure: f64,
+    /// The transform at other times of the shutter, in the order of time.
+    pub motion: Vec<Motion<DAffine3>>,
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensDesc {
+    /// Radius of the aperture, metres.
+    pub aperture_radius: f64,
+    /// Distance along the axis at which the picture is sharp, metres.
+    pub focus_distance: f64,
 }
 
 /// How a camera projects.

@@ -50,6 +50,18 @@ pub struct MeshDesc {
     pub colors: Option<Attribute<[f32; 4]>>,
     /// Index into the instance's material list for each triangle; `None` for 0 everywhere.
     pub material_slots: Option<Vec<u16>>,
+    /// Points at other times of the shutter, in the order of time; empty for a mesh that keeps its
+    /// shape. `points` is the shape at the frame itself.
+    pub motion: Vec<Motion<Vec<[f32; 3]>>>,
+}
+
+/// What something is at another time than the frame's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Frames after the frame itself; negative before it.
+    pub time: f64,
+    /// What it is then.
+    pub value: T,
 }
 
 /// A mesh placed in the world.
@@ -65,6 +77,8 @@ pub struct InstanceDesc {
     pub mesh: u32,
     /// Object to world.
     pub transform: DAffine3,
+    /// The same at other times of the shutter, in the order of time; empty for what does not move.
+    pub motion: Vec<Motion<DAffine3>>,
     /// Index into `SceneDesc::materials` for each slot; a slot without entry, or with `None`, has
     /// the default material.
     pub materials: Vec<Option<u32>>,

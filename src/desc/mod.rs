@@ -11,9 +11,10 @@ mod image;
 mod light;
 mod material;
 mod mesh;
+mod render;
 mod texture;
 
-pub use camera::{CameraDesc, ProjectionDesc};
+pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use image::{ColorSpace, ImageDesc, PixelData};
 pub use light::{
@@ -23,7 +24,8 @@ pub use material::{
     AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
     SheenDesc, VolumeDesc,
 };
-pub use mesh::{Attribute, InstanceDesc, MeshDesc, Visibility};
+pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, Visibility};
+pub use render::RenderDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use crate::error::Place;
@@ -51,4 +53,6 @@ pub struct SceneDesc {
     pub ies: Vec<IesDesc>,
     /// Names of the material variants that the file offers.
     pub variants: Vec<String>,
+    /// What the file itself says of the render; the command line comes first.
+    pub render: RenderDesc,
 }

@@ -4,6 +4,7 @@ mod exr_image;
 pub mod gltf;
 pub mod ies;
 pub mod image;
+pub mod usd;
 
 use std::path::Path;
 
@@ -33,15 +34,38 @@ pub struct ImportOptions {
     pub frame: Option<f64>,
     /// Frames per second, for files that count time in seconds.
     pub fps: f64,
-    /// Name of the material variant to show; `None` for the file's own materials.
-    pub variant: Option<String>,
+    /// Variants to show instead of the file's own choice: the name of a material variant of glTF, or
+    /// `/Prim{set=choice}` of USD.
+    pub variants: Vec<String>,
     /// Units of the lights of glTF files.
     pub light_units: LightUnits,
+    /// How often subdivision surfaces are refined.
+    pub subdivision: u32,
+    /// Which of USD's purposes are shown beside `default`.
+    pub purposes: Vec<Purpose>,
+}
+
+/// Purposes of USD prims that a render may show or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Full quality.
+    Render,
+    /// A stand-in for interactive work.
+    Proxy,
+    /// Helpers.
+    Guide,
 }
 
 impl Default for ImportOptions {
     fn default() -> Self {
-        Self { frame: None, fps: 24.0, variant: None, light_units: LightUnits::Spec }
+        Self {
+            frame: None,
+            fps: 24.0,
+            variants: Vec::new(),
+            light_units: LightUnits::Spec,
+            subdivision: 2,
+            purposes: vec![Purpose::Render],
+        }
     }
 }
 
@@ -53,9 +77,10 @@ pub fn scene(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> R
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match extension.as_str() {
         "gltf" | "glb" => gltf::load(path, options, warnings),
-        "usd" | "usda" | "usdc" | "usdz" => {
-            Err(Error::unsupported(&Place::file(path), "USD is not read yet; .gltf and .glb files are"))
+        "usd" | "usda" | "usdc" | "usdz" => usd::load(path, options, warnings),
+        _ => {
+            let what = "not a scene that can be read; .usd, .usda, .usdc, .usdz, .gltf and .glb files are";
+            Err(Error::unsupported(&Place::file(path), what))
         }
-        _ => Err(Error::unsupported(&Place::file(path), "not a scene that can be read; .gltf and .glb files are")),
     }
 }

@@ -60,6 +60,11 @@ pub fn framing_camera(scene: &SceneDesc, aspect: f64) -> CameraDesc {
         projection: ProjectionDesc::Perspective { fov_y: FOV_Y, aspect: None },
         clip_near: 0.0,
         clip_far: f64::INFINITY,
+        shift: [0.0; 2],
+        lens: None,
+        shutter: [0.0; 2],
+        exposure: 1.0,
+        motion: Vec::new(),
     }
 }
 
@@ -81,6 +86,7 @@ mod tests {
             asset: "a".into(),
             mesh: 0,
             transform: DAffine3::from_translation(DVec3::new(1e5, 0.0, 0.0)),
+            motion: Vec::new(),
             materials: vec![],
             object_index: 0,
             visibility: Visibility::ALL,

@@ -80,7 +80,7 @@ fn variants_and_the_sun_of_the_sheen_chair() {
     assert_eq!(plain.variants, ["Mango Velvet", "Peacock Velvet"]);
     let LightKind::Distant { irradiance, .. } = plain.lights[0].kind else { panic!("a sun") };
     assert_eq!(irradiance, [3.0; 3]);
-    let peacock = ImportOptions { variant: Some("Peacock Velvet".into()), ..ImportOptions::default() };
+    let peacock = ImportOptions { variants: vec!["Peacock Velvet".into()], ..ImportOptions::default() };
     let names = |s: &SceneDesc| s.materials.iter().map(|m| m.name.to_string()).collect::<Vec<_>>();
     assert_ne!(names(&plain), names(&asset(path, &peacock).unwrap()));
 }

@@ -148,7 +148,7 @@ fn variants_by_name() {
     glb.json["extensions"] = json!({"KHR_materials_variants": {"variants": [{"name": "Day"}, {"name": "Night"}]}});
     let mappings = json!([{"material": 1, "variants": [1]}]);
     glb.set("/meshes/0/primitives/0/extensions", json!({"KHR_materials_variants": {"mappings": mappings}}));
-    let named = |name: &str| ImportOptions { variant: Some(name.into()), ..ImportOptions::default() };
+    let named = |name: &str| ImportOptions { variants: vec![name.into()], ..ImportOptions::default() };
     assert_eq!(load(&glb).variants, ["Day", "Night"]);
     assert_eq!(&*material(&load(&glb)).name, "plain");
     assert_eq!(&*material(&load_with(&glb, &named("Night"))).name, "red");

@@ -51,6 +51,7 @@ impl Builder {
             asset: "asset".into(),
             mesh: self.desc.meshes.len() as u32 - 1,
             transform,
+            motion: Vec::new(),
             materials: vec![Some(material)],
             object_index: self.desc.instances.len() as u32 + 1,
             visibility: Visibility::ALL,
@@ -116,6 +117,11 @@ impl Builder {
             projection: ProjectionDesc::Orthographic { half_width: half, half_height: half },
             clip_near: 0.0,
             clip_far: f64::INFINITY,
+            shift: [0.0; 2],
+            lens: None,
+            shutter: [0.0; 2],
+            exposure: 1.0,
+            motion: Vec::new(),
         });
     }
 }

@@ -83,6 +83,7 @@ pub(super) fn build(
         tangents,
         colors: geometry.colors.map(Attribute::Point),
         material_slots: None,
+        motion: Vec::new(),
     }))
 }
 

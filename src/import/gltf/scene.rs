@@ -109,7 +109,7 @@ impl Builder<'_> {
 
     /// The index of the variant that was asked for.
     fn variant(&self) -> Result<Option<usize>> {
-        let Some(wanted) = &self.options.variant else { return Ok(None) };
+        let Some(wanted) = self.options.variants.last() else { return Ok(None) };
         let variants = &self.reader.root.extensions.variants.variants;
         if let Some(index) = variants.iter().position(|v| v.name == *wanted) {
             return Ok(Some(index));
@@ -311,6 +311,7 @@ impl Builder<'_> {
                     asset: placed.asset.clone(),
                     mesh: part.mesh,
                     transform,
+                    motion: Vec::new(),
                     materials: vec![part.material],
                     object_index: placed.node as u32 + 1,
                     visibility: penumbra.visible(Visibility::ALL),
@@ -339,6 +340,11 @@ impl Builder<'_> {
                 projection,
                 clip_near,
                 clip_far,
+                shift: [0.0; 2],
+                lens: None,
+                shutter: [0.0; 2],
+                exposure: 1.0,
+                motion: Vec::new(),
             }),
             Err(what) => warnings.push(&placed.place, format!("{what}; the camera is left out")),
         }
