@@ -97,8 +97,9 @@ mod tests {
             let r = (1.0 - z * z).sqrt();
             let phi = 2.399_963 * i as f32;
             let n = Vec3::new(r * phi.cos(), r * phi.sin(), z).normalize();
-            let (s, t) = orthonormal_pair(n.as_dvec3());
-            assert!((s.cross(t) - n.as_dvec3()).length() < 1e-6);
+            let unit = n.as_dvec3().normalize();
+            let (s, t) = orthonormal_pair(unit);
+            assert!((s.cross(t) - unit).length() < 1e-14 && (s.length() - 1.0).abs() < 1e-14);
             let view = Frame::from_z(Vec3::new(0.6, 0.0, 0.8));
             for f in [
                 Frame::from_z(n),
