@@ -127,9 +127,15 @@ fn an_image_is_radiance_upright_with_its_mean() {
     assert!(emitter.is_none() && warnings[0].contains("image \"gobo\" is black"), "{warnings:?}");
     let (emitter, warnings) = made(kind, above, &[image([-1.0, 0.0, 4.0, 0.0])]);
     let emitter = emitter.unwrap();
-    assert!(
-        (power(&emitter) / (PI * 4.0 * 3.0) - 1.0).abs() < 1e-6 && warnings[0].contains("1 of 4 pixels"),
-        "{warnings:?}"
-    );
+    assert!((power(&emitter) / (PI * 4.0 * 3.0) - 1.0).abs() < 1e-6);
+    assert!(warnings.len() == 1 && warnings[0].contains("1 pixel negative: taken as 0"), "{warnings:?}");
     assert_eq!(seen(&emitter, 0.75, 0.75), 0.0);
+    // As a dome's: a sun above the range of the file is as bright as the brightest of the others.
+    let (emitter, warnings) = made(kind, above, &[image([f32::INFINITY, f32::NAN, 4.0, -1.0])]);
+    let emitter = emitter.unwrap();
+    assert!((power(&emitter) / (PI * 4.0 * 6.0) - 1.0).abs() < 1e-6);
+    assert_eq!([seen(&emitter, 0.75, 0.75), seen(&emitter, -0.75, 0.75)], [12.0, 0.0]);
+    let said = "lamp 0\": its image \"gobo\" has 1 pixel not a number: taken as 0, 1 pixel negative: taken as 0, \
+                1 pixel infinite: taken as 4, the largest of the others";
+    assert!(warnings.len() == 1 && warnings[0].contains(said), "{warnings:?}");
 }
