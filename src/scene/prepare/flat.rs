@@ -81,6 +81,7 @@ fn picture(image: &ImageDesc, factor: Rgb, mended: &mut Mended) -> Option<Pictur
         let pixels = PixelData::F32(texels.iter().flat_map(|texel| texel.to_array()).collect());
         good = ImageDesc { channels: 3, color_space: ColorSpace::Linear, pixels, ..good };
     }
+    // What was wrong with its colors is told already.
     let made = match Image::new(good, &mut Warnings::new()) {
         Ok(made) => Arc::new(made),
         Err(error) => {
