@@ -16,7 +16,6 @@ use crate::quadrature::{Tube, cap};
 
 /// Where the light is: `d` is its distance from the receiver in radii, `scale` the radius in metres.
 struct Stage {
-    name: String,
     d: f64,
     scale: f64,
     turn: DQuat,
@@ -40,7 +39,7 @@ impl Stage {
         [self.scale, 0.7 * self.scale]
     }
 
-    /// Half angle of a cone of directions and its angle to the normal.
+    /// Irradiance from the cone of directions of `half` radians about `axis`.
     fn cap(&self, half: f64, axis: DVec3) -> f64 {
         let n = self.n.as_dvec3();
         let tilt = axis.cross(n).length().atan2(axis.dot(n));
@@ -73,9 +72,9 @@ fn hold(case: impl Fn(&Stage) -> (penumbra::light::AnyEmitter, f64)) {
                 let p = if !turned { Vec3::ZERO } else { Vec3::new(0.3, -0.2, 0.1) * scale as f32 };
                 let name = format!("{d:e} radii away, scale {scale:e}, {what}, at {p}");
                 let n = (turn * n).normalize().as_vec3();
-                let stage = Stage { name, d, scale, turn, p, n };
+                let stage = Stage { d, scale, turn, p, n };
                 let (light, irradiance) = case(&stage);
-                cases.push(Case::new(stage.name, light, p, n, irradiance));
+                cases.push(Case::new(name, light, p, n, irradiance));
             }
         }
     }

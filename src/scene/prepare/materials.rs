@@ -154,7 +154,7 @@ impl Builder<'_> {
         let mut mended = Mended::default();
         let emission =
             desc::ColorInput { factor: emission(desc, &mut mended).to_array().map(f64::from), ..desc.emission };
-        mended.tell_of(&format!("material \"{}\"", desc.name), &desc.place, warnings);
+        mended.tell_at(&desc.place, warnings);
         let volume = desc.volume.filter(|v| v.thickness.factor > 0.0);
         let opaque = effects::is_opaque(self.desc, desc);
         Material {

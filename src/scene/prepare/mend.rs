@@ -21,17 +21,18 @@ impl Mended {
     }
 
     /// One warning for all notes on `light`.
-    pub fn tell(mut self, light: &LightDesc, left_out: bool, warnings: &mut Warnings) {
-        if left_out && !self.notes.is_empty() {
-            self.note("it emits nothing and is left out");
+    pub fn tell(self, light: &LightDesc, left_out: bool, warnings: &mut Warnings) {
+        if !self.notes.is_empty() {
+            let notes = self.notes.join("; ");
+            let end = if left_out { "; it emits nothing and is left out" } else { "" };
+            warnings.push(&light.place, format!("light \"{}\": {notes}{end}", light.name));
         }
-        self.tell_of(&format!("light \"{}\"", light.name), &light.place, warnings);
     }
 
-    /// One warning for all notes on what is called so.
-    pub fn tell_of(self, name: &str, place: &Place, warnings: &mut Warnings) {
+    /// One warning for all notes on what stands at `place`, which names it.
+    pub fn tell_at(self, place: &Place, warnings: &mut Warnings) {
         if !self.notes.is_empty() {
-            warnings.push(place, format!("{name}: {}", self.notes.join("; ")));
+            warnings.push(place, self.notes.join("; "));
         }
     }
 
