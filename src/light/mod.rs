@@ -1,7 +1,7 @@
 //! Emitters: one file each, one list, and the choice among them.
 //!
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
-//! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
+//! translation in `scene/prepare/lamp.rs`, and a file in `tests/lights/`.
 
 mod aim;
 mod bounds;

@@ -11,6 +11,7 @@ mod links;
 mod materials;
 mod mend;
 mod shaping;
+mod texels;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -72,7 +73,10 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let lights = if effects.light || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
-        lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings)
+        let lights =
+            lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings);
+        tell_of_darkness(&desc, &lights, &materials, &mut warnings);
+        lights
     } else {
         Vec::new()
     };
@@ -121,9 +125,24 @@ fn render_space_origin(desc: &SceneDesc, camera: DVec3) -> DVec3 {
     (camera / cell).round() * cell
 }
 
-/// The dome of a scene that has no light at all.
+/// True where bad input has taken a light away before it came to be prepared.
+fn lost_light(desc: &SceneDesc) -> bool {
+    desc.lights_left_out > 0 || desc.materials.iter().any(materials::emission_is_lost)
+}
+
+/// Warns where the author's lights have all been left out: another light would be a guess.
+fn tell_of_darkness(desc: &SceneDesc, lights: &[Light], materials: &[super::Material], warnings: &mut Warnings) {
+    let shines = !lights.is_empty() || materials.iter().any(super::Material::emits);
+    // Lamps that are turned down to 0 are meant to be dark.
+    let meant = desc.lights.iter().any(|light| light.kind.color() != [0.0; 3]);
+    if !shines && (meant || lost_light(desc)) {
+        warnings.push(&desc.place, "none of the scene's lights shines: it is rendered in the dark");
+    }
+}
+
+/// The dome of a scene that was given no light at all.
 fn default_dome(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<LightDesc> {
-    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits);
+    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits) || lost_light(desc);
     if lit {
         return None;
     }
