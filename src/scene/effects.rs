@@ -10,7 +10,7 @@ use crate::settings::{EffectsMode, Settings};
 /// Effects that a render simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
-    /// Light that arrives at surfaces.
+    /// Light that arrives at surfaces, but for what the shadow passes of light groups sample.
     pub light: bool,
     /// Light after more than one scattering.
     pub indirect: bool,
@@ -24,6 +24,8 @@ pub struct Effects {
     pub ao: bool,
     /// The shadow and unshadowed passes.
     pub shadow: bool,
+    /// Shadow passes of light groups.
+    pub group_shadows: bool,
     /// The irradiance of surfaces without diffuse reflection, for those.
     pub irradiance: bool,
     /// Some light has a shape of its own that rays may meet.
@@ -85,6 +87,7 @@ impl Effects {
             occlusion_maps: true,
             ao: passes.needs_ao(),
             shadow: passes.needs_shadow(),
+            group_shadows: passes.needs(Quantity::GroupUnshadowed),
             irradiance: passes.needs_irradiance(),
             lamps: true,
             emissive: true,

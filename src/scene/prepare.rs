@@ -69,7 +69,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let build_time = start.elapsed();
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
-    let lights = if effects.light || passes.needs(Quantity::Environment) {
+    let lights = if effects.light || effects.group_shadows || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
         lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings)
@@ -83,7 +83,8 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         LightSelection::Power => Strategy::Power,
         LightSelection::Uniform => Strategy::Uniform,
     };
-    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
+    let of_groups = passes.needs_shadow_of_groups();
+    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     let scene = Scene {
         camera,
         size,
