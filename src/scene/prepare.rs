@@ -21,7 +21,7 @@ use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
-use crate::film::Quantity;
+use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
 use crate::settings::{LightSelection, Settings};
@@ -60,6 +60,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let camera = camera::prepare(&camera_desc, size, origin);
 
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
     let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
@@ -101,6 +102,17 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         textures,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// One warning for passes that the integrator does not compute.
+fn warn_of_passes_left_out(desc: &SceneDesc, settings: &Settings, passes: &PassSet, warnings: &mut Warnings) {
+    let is_left_out = |chosen: &Chosen<'_>| chosen.pass.needs.iter().any(|&q| !settings.integrator.computes(q));
+    let names: Vec<String> = passes.iter().filter(is_left_out).map(|chosen| chosen.name()).collect();
+    if !names.is_empty() {
+        let names = names.join(", ");
+        let what = format!("--integrator ao computes none of these passes, which stay 0 and shadows 1: {names}");
+        warnings.push(&desc.place, what);
+    }
 }
 
 /// Names of the light groups that lamps and emissive objects are in.
