@@ -76,23 +76,29 @@ fn more_ao_samples_are_the_same_mean_with_less_noise() {
 
 #[test]
 fn light_sampling_and_the_surface_s_own_directions_agree_on_a_glowing_square() {
-    let lit_by = |material: MaterialDesc| {
+    let lit_by = |material: MaterialDesc| -> [f64; 2] {
         let mut builder = Builder::default();
         let floor = builder.lambert(0.5);
         builder.ground(10.0, floor);
         let glow = builder.material(material);
         builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], glow);
+        // Dim, for there to be a light where the square is none.
+        builder.light(LightKind::Point { intensity: [1e-6; 3] }, DAffine3::from_translation(DVec3::Y * 2.0));
         builder.look([0.0; 3], [0.7, -0.7, 0.0], 1e-3);
-        mean(&picture(&builder.desc, 16, &settings("diffuse_direct", 256)), "Diffuse Direct", 0)
+        let picture = picture(&builder.desc, 16, &settings("diffuse_direct,shadow", 256));
+        ["Diffuse Direct", "Shadow"].map(|layer| mean(&picture, layer, 0))
     };
     let white = ColorInput::constant([1.0; 3]);
-    let sampled = lit_by(MaterialDesc { emission: white, ..MaterialDesc::default() });
+    let [sampled, shadow] = lit_by(MaterialDesc { emission: white, ..MaterialDesc::default() });
     // What is unlit is no light: only rays that the surface has sampled find it.
-    let found = lit_by(MaterialDesc { base_color: white, unlit: true, ..MaterialDesc::default() });
+    let [found, shadow_of_unlit] = lit_by(MaterialDesc { base_color: white, unlit: true, ..MaterialDesc::default() });
     let x = 0.5 / 1.25_f64.sqrt();
     let exact = 4.0 / PI * x * x.atan();
     close("both strategies", sampled, exact, 2e-3);
     close("the surface's directions alone", found, exact, 5e-3);
+    // All but the point lies behind the square.
+    close("shadow", shadow, 1.0, 1e-4);
+    close("shadow of what is unlit", shadow_of_unlit, 1.0, 1e-4);
 }
 
 #[test]

@@ -65,8 +65,8 @@ pub fn emitters_along(
         travelled += hit.t;
         let it = scene.interaction(&rest, &hit, cone);
         cone.width = cone.at(hit.t);
-        let rules = scene.instance(it.instance).rules.as_deref();
-        if let Some(rules) = rules.filter(|rules| asked(rules)) {
+        let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
+        if asked(rules) {
             let le = scene.emission(&it) * (scene.opacity(&it) * mesh_weight(scene, last, &it));
             visit(Found { le, dist: travelled, rules });
         }
