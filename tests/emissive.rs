@@ -16,7 +16,7 @@ use penumbra::desc::{
 use penumbra::math::{DAffine3, DVec3, Vec3};
 use penumbra::settings::Settings;
 use plane::lambert;
-use scene::{Builder, mean, picture, settings};
+use scene::{Builder, close, mean, picture, settings};
 
 const RADIANCE: f64 = 100.0;
 const HALF: f64 = 0.05;
@@ -118,4 +118,43 @@ fn a_partly_open_emitter_is_sampled_like_any_other() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Combined of a shiny ground below a wide square of opacity `alpha`, and that of the square itself.
+fn seen_and_reflected(alpha: f64, radiance: f64, roughness: f64) -> [f64; 2] {
+    let mut builder = Builder::default();
+    let material = |base: f64, specular: f64| MaterialDesc {
+        base_color: ColorInput::constant([base; 3]),
+        specular: ScalarInput::constant(specular),
+        roughness: ScalarInput::constant(roughness),
+        ..MaterialDesc::default()
+    };
+    let shiny = builder.material(material(0.5, 1.0));
+    let glow = builder.material(MaterialDesc {
+        emission: ColorInput::constant([radiance; 3]),
+        alpha: ScalarInput::constant(alpha),
+        alpha_mode: AlphaMode::Blend,
+        ..material(0.0, 0.0)
+    });
+    builder.ground(10.0, shiny);
+    builder.quad([-2.0, 0.5, -2.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0], glow);
+    builder.look([0.0; 3], [0.2, -0.3, 0.1], 0.1);
+    // Below the square.
+    builder.desc.cameras[0].transform.translation *= 0.4;
+    let settings = |spp| Settings { max_bounces: 0, ..settings("combined", spp) };
+    let reflected = mean(&picture(&builder.desc, 8, &settings(512)), "Combined", 0);
+    builder.desc.cameras.clear();
+    builder.look([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 0.1);
+    builder.desc.instances.remove(0);
+    [reflected, mean(&picture(&builder.desc, 8, &settings(16)), "Combined", 0)]
+}
+
+#[test]
+fn half_of_twice_the_light_is_the_same_light_whichever_strategy_finds_it() {
+    for roughness in [0.0, 0.1, 0.5, 1.0] {
+        let [half, half_seen] = seen_and_reflected(0.5, 2.0, roughness);
+        let [whole, whole_seen] = seen_and_reflected(1.0, 1.0, roughness);
+        close(&format!("reflected, roughness {roughness}"), half, whole, 0.01);
+        close("seen", half_seen, whole_seen, 1e-6);
+    }
 }
