@@ -84,6 +84,9 @@ impl Shading<'_> {
         }
         let response =
             if self.bsdf.lacks_diffuse() { Rgb::splat(local_wi.z) } else { self.bsdf.eval(local_wi).f_cos.diffuse };
+        if response.is_black() {
+            return None;
+        }
         let visibility = visibility(scene, self.it, wi, end, rules);
         Some(DirectLight { unoccluded: response * (li * (1.0 / pdf)), visibility, rules })
     }
