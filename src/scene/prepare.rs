@@ -22,7 +22,7 @@ use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
-use crate::film::Quantity;
+use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
 use crate::settings::{LightSelection, Settings};
@@ -61,6 +61,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let camera = camera::prepare(&camera_desc, size, origin);
 
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
     let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
@@ -70,7 +71,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let build_time = start.elapsed();
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
-    let lights = if effects.light || passes.needs(Quantity::Environment) {
+    let lights = if effects.light || effects.group_shadows || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
         let lights =
@@ -87,7 +88,8 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         LightSelection::Power => Strategy::Power,
         LightSelection::Uniform => Strategy::Uniform,
     };
-    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
+    let of_groups = passes.needs_shadow_of_groups();
+    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     let scene = Scene {
         camera,
         size,
@@ -104,6 +106,17 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         textures,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// One warning for passes that the integrator does not compute.
+fn warn_of_passes_left_out(desc: &SceneDesc, settings: &Settings, passes: &PassSet, warnings: &mut Warnings) {
+    let is_left_out = |chosen: &Chosen<'_>| chosen.pass.needs.iter().any(|&q| !settings.integrator.computes(q));
+    let names: Vec<String> = passes.iter().filter(is_left_out).map(|chosen| chosen.name()).collect();
+    if !names.is_empty() {
+        let names = names.join(", ");
+        let what = format!("--integrator ao computes none of these passes, which stay 0 and shadows 1: {names}");
+        warnings.push(&desc.place, what);
+    }
 }
 
 /// Names of the light groups that lamps and emissive objects are in.

@@ -293,7 +293,7 @@ fn the_choice_among_lights_has_the_odds_that_it_tells() {
                     lights.push(Distant::new(Vec3::X, 0.1, Rgb::splat(0.2)).into());
                     lights.push(Dome::new(Rgb::splat(0.05), None).into());
                 }
-                let set = LightSet::chosen_by(strategy, lights, SCENE, 1);
+                let set = LightSet::chosen_by(strategy, lights, SCENE, 1, &[]);
                 for _ in 0..3 {
                     let at = Receiver::everywhere(random.in_box(3.0));
                     holds(&format!("{strategy:?}, {count} lights, far: {far}"), &set, &at);
@@ -416,7 +416,7 @@ fn a_light_that_sends_something_is_chosen_in_any_scene() {
         for strategy in [Strategy::Tree, Strategy::Power, Strategy::Uniform] {
             let mut lights: Vec<Light> = (0..count).map(|i| lamp(&mut random, i)).collect();
             lights.push(Distant::new(random.direction(), 0.0, Rgb::splat(1e-3)).into());
-            let set = LightSet::chosen_by(strategy, lights, SCENE, 1);
+            let set = LightSet::chosen_by(strategy, lights, SCENE, 1, &[]);
             for _ in 0..100 {
                 let at = random.receiver(2.0);
                 for (i, light) in set.iter().enumerate() {
