@@ -174,7 +174,7 @@ impl Lobe {
         if lit { bounded(weight) } else { 0.0 }
     }
 
-    /// Distance of the box from `at` that goes with its mean importance, and its least.
+    /// Distance of the box from `at` that goes into its importance, and its least one, rounded down.
     #[inline(always)]
     pub fn distances(&self, at: &Asked) -> [f32; 2] {
         let d = [self.center[0] - at.p[0], self.center[1] - at.p[1], self.center[2] - at.p[2]];
@@ -187,7 +187,7 @@ impl Lobe {
     }
 }
 
-/// A weight above 0 that neither vanishes nor hides all others.
+/// A weight that is above 0, made to neither vanish nor hide all others.
 #[inline(always)]
 pub(super) fn bounded(weight: f32) -> f32 {
     larger(smaller(weight, MOST), LEAST)

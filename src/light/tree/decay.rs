@@ -2,8 +2,8 @@
 //! brings, for each child the mean of its lights.
 //!
 //! The factor is kept at a few distances; between them, and beyond, its logarithm is linear in that of
-//! the distance. So it is about exact for powers of the distance, and within a fifth or so where one
-//! power goes over into another.
+//! the distance. So it is about exact for powers of the distance, and within a third where one power goes
+//! over into another.
 
 use super::node::{Child, Node, WIDTH};
 use crate::light::bounds::{Asked, bounded, larger, smaller};
@@ -72,7 +72,8 @@ pub(super) fn of_nodes(nodes: &[Node], lights: &[LightBounds], decays: &[Decay],
     }
     let octave = if size > 0.0 { size.log2().clamp(-80.0, 80.0).ceil() as i32 } else { 0 };
     let first = octave + BEYOND - STEP * (KNOTS as i32 - 1);
-    let none = Decays { first: first as f32, start: [0.0; 8], slopes: [[0.0; 8]; KNOTS - 1], range: [0.0; 8] };
+    let none =
+        Decays { first: first as f32, start: [0.0; WIDTH], slopes: [[0.0; WIDTH]; KNOTS - 1], range: [0.0; WIDTH] };
     let mut all = vec![none; nodes.len()];
     let mut sums = vec![Sum::default(); nodes.len()];
     // Children come after their node.
@@ -103,8 +104,7 @@ impl Decays {
         }
     }
 
-    /// The factor of child `slot`, lights of which are about `dist` away and none is nearer than
-    /// `nearest`; 0 only where none is within its range. Without branches, for the sake of vector code.
+    /// The factor of child `slot`, whose lights are about `dist` away and none nearer than `nearest`; 0 only where none is within its range. Without branches, for the sake of vector code.
     #[inline(always)]
     pub fn factor(&self, slot: usize, dist: f32, nearest: f32) -> f32 {
         let x = log2(dist) - self.first;

@@ -119,7 +119,7 @@ impl Node {
         }
     }
 
-    /// Odds of the children at `at`, whose lights decay by `decays`.
+    /// Odds of the children at `at`, whose lights decay by `decays` or as in nature.
     #[inline]
     pub fn weigh(&self, at: &Asked, decays: Option<&Decays>) -> Weights {
         let mut odds = [0.0; WIDTH];
