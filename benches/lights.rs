@@ -1,6 +1,7 @@
-//! The choice among many lights: noise and cost of the tree, of choice by power and of uniform choice.
+//! The choice among many lights: noise and cost of the tree, of choice by power and of uniform choice,
+//! and the time that whole pictures take.
 //!
-//! `cargo bench --bench lights -- [quality] [cost]`; all without arguments.
+//! `cargo bench --bench lights -- [quality] [cost] [mesh] [time]`; all without arguments.
 
 #![allow(unsafe_code)]
 
@@ -11,8 +12,15 @@ use penumbra::light::LightTree;
 
 #[path = "lights/clock.rs"]
 mod clock;
+#[path = "lights/mesh.rs"]
+mod mesh;
+#[path = "../tests/support/scene.rs"]
+#[allow(dead_code, reason = "made for the tests")]
+mod scene;
 #[path = "lights/scenes.rs"]
 mod scenes;
+#[path = "lights/time.rs"]
+mod time;
 
 use scenes::{Random, irradiance};
 
@@ -24,6 +32,12 @@ fn main() {
     }
     if runs("cost") {
         cost();
+    }
+    if runs("mesh") {
+        mesh::run();
+    }
+    if runs("time") {
+        time::run();
     }
 }
 

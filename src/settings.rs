@@ -5,7 +5,7 @@
 
 use std::fmt::Display;
 
-use crate::film::{Filter, PassSet};
+use crate::film::{Filter, PassSet, Quantity};
 use crate::sampling::{PATTERNS, Pattern};
 
 /// Which light transport is simulated.
@@ -17,6 +17,29 @@ pub enum Integrator {
     Direct,
     /// Ambient occlusion alone: Combined holds the ao pass.
     Ao,
+}
+
+impl Integrator {
+    /// True where it computes `q`, or `q` is 0 by what the integrator is.
+    pub const fn computes(self, q: Quantity) -> bool {
+        use Quantity::*;
+        match self {
+            Self::Path | Self::Direct => true,
+            Self::Ao => matches!(
+                q,
+                Combined
+                    | Ao
+                    | Normal
+                    | Uv
+                    | DenoisingNormal
+                    | DenoisingDepth
+                    | CryptoObject
+                    | CryptoMaterial
+                    | CryptoAsset
+                    | FirstHit
+            ),
+        }
+    }
 }
 
 /// How one of many lights is chosen.

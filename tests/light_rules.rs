@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use penumbra::desc::{ColorInput, LightKind, LightLinks, LinkSet, MaterialDesc, ScalarInput, Visibility};
 use penumbra::math::{DAffine3, DVec3};
+use penumbra::scene::{View, prepare};
 use penumbra::settings::Settings;
 use scene::{Builder, close, mean, picture, settings};
 
@@ -263,4 +264,87 @@ fn groups_sum_to_the_picture_and_have_shadows_of_their_own() {
         let expected = mean(&alone, "Shadow", 0);
         close(group, mean(&both, &format!("Shadow_{group}"), 0), expected, 0.02);
     }
+}
+
+#[test]
+fn a_light_that_transmission_does_not_see_is_not_transmitted() {
+    for (name, kind) in kinds() {
+        let through = |transmission: bool| {
+            let mut builder =
+                lit(kind, 0.4, LightLinks::default(), Visibility { transmission, camera: false, ..Visibility::ALL });
+            builder.desc.materials[0].transmission = ScalarInput::constant(0.5);
+            // From below, where nothing shines but through the ground.
+            builder.desc.cameras.clear();
+            builder.look([0.0; 3], [0.1, 1.0, 0.1], 0.2);
+            mean(&picture(&builder.desc, 6, &direct(256)), "Transmission Direct", 0)
+        };
+        assert!(through(true) > 1e-3, "{name}");
+        assert_eq!(through(false), 0.0, "{name}");
+    }
+}
+
+/// Objects that are more kinds of blocker than can be told apart: the first are, the rest stop every light.
+#[test]
+fn blockers_of_too_many_kinds_stop_the_light_of_every_light() {
+    for (last, stopped) in [(false, 0.0), (true, 1.0)] {
+        let links =
+            LightLinks { blockers: Some(LinkSet { instances: vec![0], exclude: false }), ..LightLinks::default() };
+        let mut builder = lit(Kind::Lamp(LightKind::Point { intensity: [5.0; 3] }), 0.5, links, Visibility::ALL);
+        let add_far_objects = |builder: &mut Builder| {
+            for i in 0..30 {
+                builder.quad([100.0, f64::from(i), 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0);
+                let itself = vec![builder.desc.instances.len() as u32 - 1];
+                let links = &mut builder.desc.instances.last_mut().unwrap().links;
+                links.blockers = Some(LinkSet { instances: itself, exclude: false });
+            }
+        };
+        if last {
+            add_far_objects(&mut builder);
+        }
+        let lid = add_lid(&mut builder);
+        builder.desc.instances[lid as usize].links.blockers = Some(LinkSet { instances: vec![lid], exclude: false });
+        if !last {
+            add_far_objects(&mut builder);
+        }
+        let view = View { camera: None, size: Some([4, 4]) };
+        let warnings = prepare(builder.desc.clone(), &view, &direct(1)).unwrap().warnings;
+        let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        let expected =
+            "shadow links tell 32 kinds of object apart, 28 are possible: the rest stop the light of every light";
+        assert!(told.len() == 1 && told[0].contains(expected), "{told:?}");
+        let shadow = mean(&picture(&builder.desc, 4, &direct(16)), "Shadow", 0);
+        assert_eq!(shadow, 1.0 - stopped, "the lid comes {}", if last { "last" } else { "first" });
+    }
+}
+
+#[test]
+fn a_glowing_object_and_a_dome_have_groups_like_lamps() {
+    let mut builder = Builder::default();
+    let (white, glow) = (builder.lambert(0.5), builder.lambert(0.0));
+    builder.desc.materials[glow as usize].emission = ColorInput::constant([20.0; 3]);
+    builder.ground(40.0, white);
+    builder.quad([-0.25, 2.0, -0.25], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], glow);
+    builder.desc.instances[1].links.group = Some("glow".into());
+    builder.dome(0.01);
+    builder.desc.lights[0].links.group = Some("sky".into());
+    builder.quad([-1.0, 1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0], white);
+    builder.look([0.0; 3], [0.1, -0.5, 0.1], 1.0);
+    let both = picture(&builder.desc, 16, &settings("combined,combined_*,shadow_*", 64));
+    let layer = |name: &str| both.layer(name).unwrap_or_else(|| panic!("{name}")).data.clone();
+    let (combined, glow, sky) = (layer("Combined"), layer("Combined_glow"), layer("Combined_sky"));
+    for i in 0..16 * 16 {
+        let (whole, sum) = (combined[4 * i], glow[3 * i] + sky[3 * i]);
+        assert!((whole - sum).abs() <= 1e-5 * whole.max(1e-3), "pixel {i}: {whole} and {sum}");
+    }
+    assert!(glow.iter().sum::<f32>() > 0.0 && sky.iter().sum::<f32>() > 0.0);
+    let shadow_alone = |remove: &dyn Fn(&mut Builder)| {
+        let mut alone = builder.clone();
+        remove(&mut alone);
+        mean(&picture(&alone.desc, 16, &settings("shadow", 256)), "Shadow", 0)
+    };
+    let of_glow = shadow_alone(&|alone| alone.desc.lights.clear());
+    // What glows still stands in the way of the sky.
+    let of_sky = shadow_alone(&|alone| alone.desc.materials[1].emission = ColorInput::constant([0.0; 3]));
+    close("glow", mean(&both, "Shadow_glow", 0), of_glow, 0.01);
+    close("sky", mean(&both, "Shadow_sky", 0), of_sky, 0.01);
 }

@@ -130,3 +130,56 @@ fn a_panel_that_touches_the_ground_lights_it_with_its_radiance() {
         assert_eq!(mean(&picture, "Shadow", 0), 1.0, "panel at {h:e}");
     }
 }
+
+/// A key three metres up and a fill behind a slat, which are `ratio` to one in power; both groups' names.
+fn key_and_fill(ratio: f64) -> Builder {
+    let mut builder = Builder::default();
+    let white = builder.lambert(0.8);
+    builder.ground(50.0, white);
+    let mut lamp = |group: &str, center: DVec3, side: f64, radiance: f64| {
+        let transform = DAffine3::from_mat3_translation(Pose::down(center).axes, center);
+        let [width, height] = [side; 2];
+        let kind =
+            LightKind::Rect { width, height, radiance: [radiance; 3], spread: PI, two_sided: false, image: None };
+        builder.light(kind, transform);
+        builder.desc.lights.last_mut().unwrap().links.group = Some(group.into());
+    };
+    lamp("key", DVec3::new(0.4, 3.0, 0.0), 1.0, ratio);
+    lamp("fill", DVec3::new(0.0, 1.5, 0.0), 0.5, 4.0);
+    builder.quad([-0.15, 0.7, -100.0], [0.3, 0.0, 0.0], [0.0, 0.0, 200.0], white);
+    look_down(&mut builder, [0.05, 0.0, -0.1], 0.6);
+    builder
+}
+
+/// Means of the blocks of a layer's first channel.
+fn block_means(picture: &Picture, layer: &str) -> Vec<f64> {
+    let data = &picture.layer(layer).unwrap().data;
+    let blocks = (0..SIZE / BLOCK).flat_map(|y| (0..SIZE / BLOCK).map(move |x| (x, y)));
+    let block = |(bx, by)| {
+        let pixels = (0..BLOCK).flat_map(|j| (0..BLOCK).map(move |i| (bx * BLOCK + i, by * BLOCK + j)));
+        pixels.map(|(x, y)| f64::from(data[3 * (y * SIZE + x) as usize])).sum::<f64>() / f64::from(BLOCK * BLOCK)
+    };
+    blocks.map(block).collect()
+}
+
+#[test]
+fn the_shadow_of_a_dim_group_is_as_good_as_that_of_a_bright_one() {
+    let mut wrong = Vec::new();
+    for group in ["key", "fill"] {
+        // How bright a light is does not matter where it is alone.
+        let mut alone = key_and_fill(1.0);
+        alone.desc.lights.retain(|light| light.links.group.as_deref() == Some(group));
+        let truth = block_means(&picture(&alone.desc, SIZE, &settings("shadow", SPP)), "Shadow");
+        for ratio in [1.0, 100.0, 1000.0] {
+            let passes = settings("shadow_*", 64);
+            let found = picture(&key_and_fill(ratio).desc, SIZE, &passes);
+            let found = block_means(&found, &format!("Shadow_{group}"));
+            let worst = found.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            println!("{group}, {ratio} to 1: worst block {worst:.1e}");
+            if worst > 8e-3 {
+                wrong.push(format!("{group}, {ratio} to 1: a block is off by {worst}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}

@@ -9,7 +9,10 @@ Cycles' pictures are kept under target/cycles/ and rendered once; Penumbra's are
 pictures stand beside them. Exits with 1 if a mean differs by more than 3 standard errors and 0.3 %.
 
 The variance of a pixel is that of its value over independent seeds at the same samples per pixel, averaged over
-pixels and channels; the ratio is Penumbra's to Cycles', below 1 where Penumbra is better. "picture" is the RMS
+pixels and channels; the ratio is Penumbra's to Cycles', below 1 where Penumbra is better. Everything is lit directly
+and nothing else, so Combined is the direct light as it stands in the picture; it decides. Diffuse Direct is the same
+divided by the albedo, coverage included: a pixel that a surface touches in one of its samples counts there as much as
+a whole one, and two such pixels on a horizon outweigh all others (S1). "picture" is the RMS
 difference of the two mean pictures beyond their noise, relative to the mean. Times are CPU seconds of one render
 without loading, the median over seeds, and want a quiet machine. Cycles' seeds are not quite independent where its
 noise is that of edges alone (its error against a converged picture is up to 6 % above this variance): that is to its
@@ -140,7 +143,7 @@ def measure(name, options):
 
 COLUMNS = [
     "case", "mean of Diffuse Direct: Penumbra", "Cycles", "difference, %", "picture, %",
-    "variance: Penumbra", "Cycles", "ratio", "ratio of Combined", "seconds: Penumbra", "Cycles",
+    "variance of Combined: Penumbra", "Cycles", "ratio", "ratio of Diffuse Direct", "seconds: Penumbra", "Cycles",
 ]
 
 
@@ -154,9 +157,9 @@ def row(name, result):
         columns += [f"{100 * diffuse['picture']:.2f}"]
     else:
         columns += ["—", "—"]
-    columns += [cell(half, "diffuse", "variance", form="{:.3g}") for half in ("penumbra", "cycles")]
+    columns += [cell(half, "combined", "variance", form="{:.3g}") for half in ("penumbra", "cycles")]
     if "compared" in result:
-        columns += [f"{it['ratio']:.2f} ± {it['ratio_error']:.2f}" for it in (diffuse, combined)]
+        columns += [f"{it['ratio']:.2f} ± {it['ratio_error']:.2f}" for it in (combined, diffuse)]
     else:
         columns += ["—", "—"]
     columns += [cell(half, "seconds", form="{:.2f}") for half in ("penumbra", "cycles")]
@@ -184,8 +187,8 @@ def main():
     both = [it["compared"][k] for it in results.values() if "compared" in it for k in PASSES]
     if both:
         print(f"\n{sum(it['agrees'] for it in both)} of {len(both)} means agree")
-        diffuse = {name: it["compared"]["diffuse"] for name, it in results.items() if "compared" in it}
-        excess = {name: (it["ratio"] - 1) / it["ratio_error"] for name, it in diffuse.items() if it["ratio"] > 1}
+        combined = {name: it["compared"]["combined"] for name, it in results.items() if "compared" in it}
+        excess = {name: (it["ratio"] - 1) / it["ratio_error"] for name, it in combined.items() if it["ratio"] > 1}
         clearly, barely = ([name for name, x in excess.items() if (x > 2) == far] for far in (True, False))
         print(f"more variance than Cycles: {', '.join(clearly) or 'none'}")
         print(f"more, but by less than two standard errors: {', '.join(barely) or 'none'}")

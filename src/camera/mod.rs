@@ -6,7 +6,7 @@ mod perspective;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 
-use crate::math::{Ray, Vec3};
+use crate::math::{Frame, Ray, Vec3};
 
 /// A camera's ray with its footprint: a cone of width `width + spread · t` around it.
 ///
@@ -43,6 +43,11 @@ impl View {
     /// Distance of `p` along the axis: what the depth pass holds.
     pub fn depth(&self, p: Vec3) -> f32 {
         (p - self.origin).dot(self.forward)
+    }
+
+    /// Its axes; z points at the viewer.
+    pub fn frame(&self) -> Frame {
+        Frame { s: self.right, t: self.up, n: -self.forward }
     }
 
     /// The part between the clip planes of the line from `o` along the unit direction `d`.

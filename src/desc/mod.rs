@@ -49,6 +49,8 @@ pub struct SceneDesc {
     pub images: Vec<ImageDesc>,
     /// Lights that are not emissive meshes, domes included.
     pub lights: Vec<LightDesc>,
+    /// How many more lights the file has that could not be read; the door has told why.
+    pub lights_left_out: usize,
     /// Measured distributions that lights use.
     pub ies: Vec<IesDesc>,
     /// Names of the material variants that the file offers.

@@ -205,13 +205,18 @@ impl PassSet {
 
     /// Direct light has to be kept with and without its shadows.
     pub fn needs_shadow(&self) -> bool {
-        use Quantity::*;
-        self.needs_any(&[Unshadowed, IrradianceUnshadowed, GroupUnshadowed, GroupIrradianceUnshadowed])
+        self.needs_any(&[Quantity::Unshadowed, Quantity::IrradianceUnshadowed])
+    }
+
+    /// For each of [`PassSet::groups`], whether its own shadow is called for.
+    pub fn needs_shadow_of_groups(&self) -> Vec<bool> {
+        let groups = 0..self.groups.len();
+        groups.map(|group| self.group_quantities(group).contains(Quantity::GroupUnshadowed)).collect()
     }
 
     /// The albedo-free pair of irradiances has to be computed too, for surfaces without diffuse albedo.
     pub fn needs_irradiance(&self) -> bool {
-        self.needs_any(&[Quantity::IrradianceUnshadowed, Quantity::GroupIrradianceUnshadowed])
+        self.needs(Quantity::IrradianceUnshadowed)
     }
 
     /// An extra ray through the pixel's centre is called for.
@@ -237,7 +242,7 @@ impl PassSet {
         self.needs_any(&[Combined, GroupCombined, DiffuseIndirect, GlossyIndirect, TransmissionIndirect])
     }
 
-    /// Light arriving at surfaces is called for at all; without it no light needs to be sampled.
+    /// Light arriving at surfaces is called for, but for the shadows of light groups.
     pub fn needs_light(&self) -> bool {
         self.needs_indirect() || self.needs_split() || self.needs_shadow()
     }
@@ -372,9 +377,10 @@ mod tests {
     fn passes_of_groups_call_for_what_their_sums_need() {
         let there = groups(&["fill", "key"]);
         let shadow = set("shadow_key").resolve(&there).expect("there");
-        assert!(shadow.needs_shadow() && shadow.needs_irradiance() && shadow.needs_light());
-        assert!(!shadow.needs_indirect() && !shadow.needs(Quantity::DiffuseDirect));
-        assert_eq!(shadow.groups().len(), 1);
+        assert!(!shadow.needs_shadow() && !shadow.needs_irradiance() && !shadow.needs_light());
+        assert_eq!(shadow.needs_shadow_of_groups(), [true]);
+        let one = set("combined_*,shadow_key").resolve(&there).expect("there");
+        assert_eq!(one.needs_shadow_of_groups(), [false, true]);
         let combined = set("combined_key").resolve(&there).expect("there");
         assert!(combined.needs_indirect() && combined.needs_light() && !combined.needs_shadow());
         let nothing = set("ao,shadow_*").resolve(&[]).expect("ao");

@@ -35,19 +35,19 @@ pub struct CryptoSample {
     pub coverage: f32,
 }
 
-/// Light of one light group in a sample; each is the part of the field of that name, or of
-/// `direct.diffuse`, that the group's lights brought.
+/// Light of one light group in a sample. All but `combined` are for a ratio alone, and estimated by
+/// samples of the group's lights alone, so that a dim group is known as well as a bright one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupSample {
-    /// Part of `combined`.
+    /// Part of `combined` that the group's lights brought.
     pub combined: Rgb,
-    /// Part of `direct.diffuse`.
+    /// An estimate of their part of `direct.diffuse`.
     pub lit: Rgb,
-    /// Part of `unshadowed`.
+    /// The same with nothing in the way.
     pub unshadowed: Rgb,
-    /// Part of `irradiance_shadowed`.
+    /// As `irradiance_shadowed` of the whole sample.
     pub irradiance_shadowed: Rgb,
-    /// Part of `irradiance_unshadowed`.
+    /// As `irradiance_unshadowed` of the whole sample.
     pub irradiance_unshadowed: Rgb,
 }
 

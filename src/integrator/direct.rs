@@ -2,7 +2,7 @@
 
 use super::scattering::seen;
 use crate::bsdf::{ByLobe, View};
-use crate::light::{Emitter, LightSample, Receiver, Rules};
+use crate::light::{Choice, Emitter, LightSample, Receiver, Rules};
 use crate::math::{Frame, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
 use crate::scene::{Interaction, Scene};
@@ -45,8 +45,9 @@ impl Shading<'_> {
         samples: f32,
     ) -> Option<DirectLight<'s, ByLobe>> {
         let at = self.receiver(scene);
-        let (LightSample { li, wi, end, pdf, delta }, rules) =
-            sample(scene, sampler, &at, self.vertex, Decision::LightPoint)?;
+        let choice = scene.lights.choose(&at, sampler.get_1d(self.decision(Decision::LightChoice)))?;
+        let u = sampler.get_2d(self.decision(Decision::LightPoint));
+        let (LightSample { li, wi, end, pdf, delta }, rules) = sample(scene, &at, choice, u)?;
         let local_wi = self.frame.to_local(wi);
         if leaks(self.it, wi, local_wi.z) {
             return None;
@@ -60,35 +61,44 @@ impl Shading<'_> {
         Some(DirectLight { unoccluded, visibility: visibility(scene, self.it, wi, end, rules), rules })
     }
 
-    /// Irradiance of one sample of one light, on the side of the viewer and whatever the surface makes
-    /// of it: what is in shadow where nothing is diffuse.
-    pub fn sample_irradiance<'s>(&self, scene: &'s Scene, sampler: &Sampler) -> Option<DirectLight<'s, Rgb>> {
+    /// Diffuse light of one sample of one light, of `group` if one is given, by light sampling alone.
+    /// Of a surface without diffuse reflection it is the irradiance on the side of the viewer: what is
+    /// in shadow where nothing is diffuse.
+    pub fn sample_diffuse<'s>(
+        &self,
+        scene: &'s Scene,
+        sampler: &Sampler,
+        group: Option<usize>,
+    ) -> Option<DirectLight<'s, Rgb>> {
         let at = Receiver { n: Some(self.frame.n), alone: true, ..self.receiver(scene) };
-        let (LightSample { li, wi, end, pdf, .. }, rules) =
-            sample(scene, sampler, &at, self.vertex, Decision::ShadowPoint)?;
-        let cos = self.frame.n.dot(wi);
-        let lit_side = self.it.ng.dot(wi) * self.it.ng.dot(self.it.wo) > 0.0;
-        if !(lit_side && cos > 0.0 && rules.seen.diffuse) {
+        let u = sampler.get_1d(self.decision(Decision::ShadowChoice));
+        let choice = match group {
+            Some(group) => scene.lights.choose_of_group(group, &at, u)?,
+            None => scene.lights.choose(&at, u)?,
+        };
+        let u = sampler.get_2d(self.decision(Decision::ShadowPoint));
+        let (LightSample { li, wi, end, pdf, .. }, rules) = sample(scene, &at, choice, u)?;
+        let local_wi = self.frame.to_local(wi);
+        if local_wi.z <= 0.0 || leaks(self.it, wi, local_wi.z) || !rules.seen.diffuse {
+            return None;
+        }
+        let response =
+            if self.bsdf.lacks_diffuse() { Rgb::splat(local_wi.z) } else { self.bsdf.eval(local_wi).f_cos.diffuse };
+        if response.is_black() {
             return None;
         }
         let visibility = visibility(scene, self.it, wi, end, rules);
-        Some(DirectLight { unoccluded: li * (cos / pdf), visibility, rules })
+        Some(DirectLight { unoccluded: response * (li * (1.0 / pdf)), visibility, rules })
+    }
+
+    fn decision(&self, decision: Decision) -> Dimension {
+        Dimension::at_bounce(self.vertex, decision)
     }
 }
 
-/// A light chosen for `at` and a point on it; the density is that of both. The choice is drawn by the
-/// decision after `point`'s name.
-fn sample<'s>(
-    scene: &'s Scene,
-    sampler: &Sampler,
-    at: &Receiver,
-    vertex: u32,
-    point: Decision,
-) -> Option<(LightSample, &'s Rules)> {
-    let choice = if point == Decision::ShadowPoint { Decision::ShadowChoice } else { Decision::LightChoice };
-    let choice = scene.lights.choose(at, sampler.get_1d(Dimension::at_bounce(vertex, choice)))?;
+/// The point of the chosen light that `u` means; the density is that of light and point.
+fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> Option<(LightSample, &'s Rules)> {
     let light = scene.lights.get(choice.light);
-    let u = sampler.get_2d(Dimension::at_bounce(vertex, point));
     let sample = light.emitter.sample_li(at, choice.u, u)?;
     Some((LightSample { pdf: sample.pdf * choice.pmf, ..sample }, &light.rules))
 }

@@ -7,6 +7,7 @@ mod media;
 mod path;
 mod scattering;
 mod shadow;
+mod shadow_pass;
 mod split;
 
 pub use first_hit::first_hit;

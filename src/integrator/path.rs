@@ -9,7 +9,8 @@ use super::first_hit::describe;
 use super::media::Media;
 use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
-use super::split::{add_direct, add_indirect, add_unscattered, group, shares, to_film};
+use super::shadow_pass;
+use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
 use crate::bsdf::{Bsdf, ByLobe, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules, Shadow};
@@ -93,16 +94,15 @@ pub fn trace(
     let mut sample = PixelSample::with_groups(scene.passes.groups().len());
     let mut path = Path::from_camera(ray, cone);
     loop {
-        let surface = next_surface(scene, sampler, &mut path, |path, segment| {
-            if scene.effects.lamps {
-                add_lamps(scene, path, segment, &mut sample);
-            }
+        let surface = next_surface(scene, sampler, &mut path, |path, met| match met {
+            Met::Stretch(segment) if scene.effects.lamps => add_lamps(scene, path, segment, &mut sample),
+            Met::Stretch(_) => {}
+            Met::Surface(it, opacity) => add_emission(scene, path, it, opacity, &mut sample),
         });
         let Some(it) = surface else {
             add_background(scene, &path, &mut sample);
             break;
         };
-        add_emission(scene, &path, &it, &mut sample);
         if path.scatterings > max_bounces {
             break;
         }
@@ -126,11 +126,14 @@ pub fn trace(
             sample.color = to_film(color);
             sample.denoising_albedo += color.sum();
         }
+        let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
+        let light_samples = if path.scatterings == 0 { settings.light_samples } else { 1 };
+        if path.scatterings == 0 && scene.effects.group_shadows {
+            shadow_pass::add_of_groups(scene, sampler, &shading, path.beta, light_samples, &mut sample);
+        }
         if !scene.effects.light {
             break;
         }
-        let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
-        let light_samples = if path.scatterings == 0 { settings.light_samples } else { 1 };
         if !surface.is_delta_only() {
             for k in 0..light_samples {
                 let sampler = if light_samples > 1 { sampler.part(k, light_samples) } else { *sampler };
@@ -138,7 +141,7 @@ pub fn trace(
             }
         }
         if path.scatterings == 0 && scene.effects.irradiance && bsdf.lacks_diffuse() {
-            add_irradiance(scene, sampler, &shading, &mut sample);
+            shadow_pass::add_irradiance(scene, sampler, &shading, &mut sample);
         }
         if !scatter(scene, sampler, &mut path, &shading, light_samples as f32, &mut sample) {
             break;
@@ -151,20 +154,28 @@ pub fn trace(
     sample
 }
 
+/// What a path meets on its way to the next surface that scatters.
+enum Met<'a> {
+    /// A stretch between two distances.
+    Stretch([f32; 2]),
+    /// A surface and its opacity, whether the path then passes it or not.
+    Surface(&'a Interaction, f32),
+}
+
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
-/// are passed by the odds of their opacity. `segment` is called with each stretch of the way.
+/// are passed by the odds of their opacity. `visit` is called with everything on the way.
 fn next_surface(
     scene: &Scene,
     sampler: &Sampler,
     path: &mut Path,
-    mut segment: impl FnMut(&Path, [f32; 2]),
+    mut visit: impl FnMut(&Path, Met<'_>),
 ) -> Option<Interaction> {
     for _ in 0..MAX_TRANSPARENT {
         let Some(hit) = scene.closest_hit(&path.ray, path.mask) else {
-            segment(path, [path.travelled, f32::INFINITY]);
+            visit(path, Met::Stretch([path.travelled, f32::INFINITY]));
             return None;
         };
-        segment(path, [path.travelled, path.travelled + hit.t]);
+        visit(path, Met::Stretch([path.travelled, path.travelled + hit.t]));
         let it = scene.interaction(&path.ray, &hit, path.cone);
         path.vertex += 1;
         path.travelled += hit.t;
@@ -172,11 +183,9 @@ fn next_surface(
             path.beta *= transmitted(&path.media, hit.t);
         }
         path.cone.width = path.cone.at(hit.t);
-        if !scene.effects.cutouts || !scene.material(&it).is_cutout() {
-            return Some(it);
-        }
-        let u = sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity));
-        if u < scene.opacity(&it) {
+        let opacity = if scene.effects.cutouts { scene.opacity(&it) } else { 1.0 };
+        visit(path, Met::Surface(&it, opacity));
+        if opacity == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < opacity {
             return Some(it);
         }
         path.ray = it.continued(&path.ray, hit.t);
@@ -240,9 +249,10 @@ fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
     }
 }
 
-/// What the surface at `it` emits towards the path.
-fn add_emission(scene: &Scene, path: &Path, it: &Interaction, sample: &mut PixelSample) {
-    let le = scene.emission(it);
+/// What the surface at `it` emits towards the path. Of one that is partly open it is the mean, whether
+/// the path stops there or not, as light sampling and the shadow passes have it.
+fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
+    let le = scene.emission(it) * opacity;
     if le.is_black() {
         return;
     }
@@ -274,26 +284,7 @@ fn add_light(
     }
     add_direct(sample, light.rules, arrives);
     if scene.effects.shadow {
-        add_unshadowed(sample, light.rules, unoccluded.diffuse);
-    }
-}
-
-fn add_unshadowed(sample: &mut PixelSample, rules: &Rules, l: Rgb) {
-    sample.unshadowed += l;
-    if let Some(group) = group(sample, rules) {
-        group.unshadowed += l;
-    }
-}
-
-/// Irradiance with and without shadows, for a surface without diffuse reflection.
-fn add_irradiance(scene: &Scene, sampler: &Sampler, shading: &Shading<'_>, sample: &mut PixelSample) {
-    let Some(light) = shading.sample_irradiance(scene, sampler) else { return };
-    let arrives = light.unoccluded * light.visibility;
-    sample.irradiance_unshadowed += light.unoccluded;
-    sample.irradiance_shadowed += arrives;
-    if let Some(group) = group(sample, light.rules) {
-        group.irradiance_unshadowed += light.unoccluded;
-        group.irradiance_shadowed += arrives;
+        sample.unshadowed += unoccluded.diffuse;
     }
 }
 
@@ -340,7 +331,7 @@ fn scatter(
         emitters_along(scene, &last, &path.ray, path.cone, unshadowed, |found| {
             let weight = seen(scattered.weight, found.rules.seen);
             if unshadowed {
-                add_unshadowed(sample, found.rules, weight.diffuse * (beta * found.le));
+                sample.unshadowed += weight.diffuse * (beta * found.le);
             }
             if found.rules.shadow != Shadow::Cast {
                 let l = weight * (beta * found.le * found.visibility(scene, &path.ray));

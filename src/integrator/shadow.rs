@@ -38,7 +38,7 @@ pub fn emitters_along(
     scene: &Scene,
     last: &Scattering,
     ray: &Ray,
-    cone: RayCone,
+    mut cone: RayCone,
     all: bool,
     mut visit: impl FnMut(Found<'_>),
 ) {
@@ -64,8 +64,9 @@ pub fn emitters_along(
         let Some(hit) = scene.closest_hit(&rest, mask::EMITTER) else { break };
         travelled += hit.t;
         let it = scene.interaction(&rest, &hit, cone);
-        let rules = scene.instance(it.instance).rules.as_deref();
-        if let Some(rules) = rules.filter(|rules| asked(rules)) {
+        cone.width = cone.at(hit.t);
+        let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
+        if asked(rules) {
             let le = scene.emission(&it) * (scene.opacity(&it) * mesh_weight(scene, last, &it));
             visit(Found { le, dist: travelled, rules });
         }

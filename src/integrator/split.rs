@@ -41,7 +41,6 @@ pub fn add_direct(sample: &mut PixelSample, rules: &Rules, l: ByLobe) {
     sample.direct += to_film(l);
     if let Some(group) = group(sample, rules) {
         group.combined += sum;
-        group.lit += l.diffuse;
     }
 }
 

@@ -171,8 +171,26 @@ impl Lobe {
 
         let lit = (received > 0.0) & emits & (outside <= radius + slack) & (self.intensity != 0.0);
         let weight = self.intensity.abs() * scale * received * emitted;
-        if lit { larger(smaller(weight, MOST), LEAST) } else { 0.0 }
+        if lit { bounded(weight) } else { 0.0 }
     }
+
+    /// Distance of the box from `at` that goes into its importance, and its least one, rounded down.
+    #[inline(always)]
+    pub fn distances(&self, at: &Asked) -> [f32; 2] {
+        let d = [self.center[0] - at.p[0], self.center[1] - at.p[1], self.center[2] - at.p[2]];
+        let squared = |v: [f32; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        let (dist_squared, radius_squared) = (squared(d), squared(self.half));
+        let dist = dist_squared.sqrt();
+        let slack = at.slack + 1e-6 * dist + LEAST;
+        let mean = larger(dist_squared + INSIDE * radius_squared, LEAST).sqrt();
+        [mean, dist - radius_squared.sqrt() - slack]
+    }
+}
+
+/// A weight that is above 0, made to neither vanish nor hide all others.
+#[inline(always)]
+pub(super) fn bounded(weight: f32) -> f32 {
+    larger(smaller(weight, MOST), LEAST)
 }
 
 /// Mean of the positive part of a height that is uniform in `middle ± half`, roughly, at most
@@ -185,11 +203,11 @@ fn mean_positive(middle: f32, half: f32) -> f32 {
 
 /// Maximum in one instruction: `f32::max` takes care of NaN.
 #[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
+pub(super) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 #[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
+pub(super) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }

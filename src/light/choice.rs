@@ -2,7 +2,7 @@
 
 use super::bounds::Asked;
 use super::tree::{LARGEST, refined};
-use super::{Emitter, Light, LightBounds, LightTree, Receiver};
+use super::{Decay, Emitter, Light, LightBounds, LightTree, Receiver};
 use crate::math::{Bounds, ONE_MINUS_EPSILON, Vec3};
 use crate::sampling::AliasTable;
 
@@ -115,7 +115,8 @@ impl Weighed {
         }
         let (items, scanned): (Vec<u32>, Vec<u32>) = members.into_iter().partition(|&i| bounds(i).is_some());
         let boxes: Vec<LightBounds> = items.iter().filter_map(|&i| bounds(i)).collect();
-        Self { scanned, tree: LightTree::new(&boxes), items }
+        let decays: Vec<Decay> = items.iter().map(|&i| lights[i as usize].emitter.decay()).collect();
+        Self { scanned, tree: LightTree::decaying(&boxes, &decays), items }
     }
 
     /// Bounded, so that a point light at zero distance leaves the sum finite.

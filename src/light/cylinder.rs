@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use azimuth::Azimuth;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
+use super::{Decay, Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
 use crate::math::{Bounds, DVec3, Rgb, Vec3};
 
 /// A tube of constant radiance, open at both ends and black inside.
@@ -219,6 +219,10 @@ impl Emitter for Cylinder {
 
     fn bounds(&self) -> Option<LightBounds> {
         Some(self.bounds)
+    }
+
+    fn decay(&self) -> Decay {
+        profile::decay(self.profile.as_deref())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {

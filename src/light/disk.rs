@@ -6,7 +6,7 @@
 
 use super::aim::{Aim, area_of};
 use super::flat::{Flat, View};
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
+use super::{Decay, Emitter, EmitterHit, LightBounds, LightSample, Receiver, profile};
 use crate::math::{Bounds, DVec2, Rgb, Vec3};
 
 /// An ellipse.
@@ -69,6 +69,10 @@ impl Emitter for Disk {
 
     fn bounds(&self) -> Option<LightBounds> {
         Some(self.bounds)
+    }
+
+    fn decay(&self) -> Decay {
+        profile::decay(self.flat.profile.as_deref())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {

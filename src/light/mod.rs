@@ -1,7 +1,7 @@
 //! Emitters: one file each, one list, and the choice among them.
 //!
 //! Adding a light = its file here, a line in [`emitters!`], a variant in `desc/light.rs` and its
-//! translation in `scene/prepare/lamp.rs`, and a line in `tests/lights.rs`.
+//! translation in `scene/prepare/lamp.rs`, and a file in `tests/lights/`.
 
 mod aim;
 mod bounds;
@@ -121,6 +121,11 @@ pub trait Emitter {
     /// Where it is and where it shines; `None` for lights infinitely far away.
     fn bounds(&self) -> Option<LightBounds>;
 
+    /// How it decays with distance.
+    fn decay(&self) -> Decay {
+        Decay::PHYSICAL
+    }
+
     /// Unoccluded irradiance that light sampling may bring to `at`, roughly: decides how often the
     /// light is chosen. Positive wherever [`Emitter::sample_li`] can give light.
     fn importance(&self, at: &Receiver) -> f32;
@@ -156,6 +161,9 @@ macro_rules! emitters {
             }
             fn bounds(&self) -> Option<LightBounds> {
                 match self { $(Self::$name(light) => light.bounds(),)+ }
+            }
+            fn decay(&self) -> Decay {
+                match self { $(Self::$name(light) => light.decay(),)+ }
             }
             fn importance(&self, at: &Receiver) -> f32 {
                 match self { $(Self::$name(light) => light.importance(at),)+ }

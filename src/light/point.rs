@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, profile};
+use super::{Decay, Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, profile};
 use crate::math::{Bounds, Rgb, Vec3};
 
 /// A point light, a delta in position; with a cone in its profile, a spot light.
@@ -48,6 +48,10 @@ impl Emitter for Point {
 
     fn bounds(&self) -> Option<LightBounds> {
         Some(self.light_bounds())
+    }
+
+    fn decay(&self) -> Decay {
+        profile::decay(self.profile.as_deref())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {

@@ -233,6 +233,11 @@ impl Shaping {
     }
 }
 
+/// The decay of a light with `profile`.
+pub(super) fn decay(profile: Option<&Profile>) -> Decay {
+    profile.map_or(Decay::PHYSICAL, |profile| profile.decay)
+}
+
 /// What a light with `bounds` and `profile` may bring to `at`, decay included.
 pub(super) fn importance(bounds: &LightBounds, profile: Option<&Profile>, at: &Receiver) -> f32 {
     let importance = bounds.importance(at);

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::aim::Aim;
 use super::flat::{Flat, View};
-use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, Receiver};
+use super::{Decay, Emission, Emitter, EmitterHit, LightBounds, LightSample, Receiver, profile};
 use crate::math::{Bounds, DVec2, Rgb, Vec3};
 
 /// A rectangle.
@@ -80,6 +80,10 @@ impl Emitter for Rect {
 
     fn bounds(&self) -> Option<LightBounds> {
         Some(self.bounds)
+    }
+
+    fn decay(&self) -> Decay {
+        profile::decay(self.flat.profile.as_deref())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {

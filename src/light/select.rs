@@ -10,6 +10,9 @@ use crate::math::{Bounds, Vec3};
 /// Up to so many lamps are asked one by one whether a ray meets them.
 const FEW_LAMPS: usize = 8;
 
+/// The choice for each class of receivers; classes that the same lights reach share one.
+type ByClass = Vec<Arc<Selection>>;
+
 /// All lights of a scene and the choice among them.
 #[derive(Clone, Debug, Default)]
 pub struct LightSet {
@@ -20,18 +23,26 @@ pub struct LightSet {
     lamps: Vec<u32>,
     /// Over `lamps`, where they are many.
     lamp_tree: Option<Arc<LightTree>>,
-    /// For each class of receivers; classes that the same lights reach share one.
-    selections: Vec<Arc<Selection>>,
+    selections: ByClass,
+    /// For each light group the choice among its lights alone; empty where none is asked for.
+    of_groups: Vec<ByClass>,
 }
 
 impl LightSet {
     /// The lights of a scene whose box is `scene` and whose receivers are of `classes` classes.
     pub fn new(lights: Vec<Light>, scene: Bounds, classes: usize) -> Self {
-        Self::chosen_by(Strategy::Tree, lights, scene, classes)
+        Self::chosen_by(Strategy::Tree, lights, scene, classes, &[])
     }
 
-    /// The same, with lights chosen by `strategy`.
-    pub fn chosen_by(strategy: Strategy, lights: Vec<Light>, scene: Bounds, classes: usize) -> Self {
+    /// The same, with lights chosen by `strategy`; for each of the light groups `of_groups` says whether
+    /// a light for diffuse reflection can be chosen in it alone.
+    pub fn chosen_by(
+        strategy: Strategy,
+        lights: Vec<Light>,
+        scene: Bounds,
+        classes: usize,
+        of_groups: &[bool],
+    ) -> Self {
         let those = |test: &dyn Fn(&Light) -> bool| -> Vec<u32> {
             (0..lights.len() as u32).filter(|&i| test(&lights[i as usize])).collect()
         };
@@ -39,15 +50,22 @@ impl LightSet {
         let lamps = those(&|light| light.emitter.is_lamp());
         let lamp_tree = tree_of(&lights, &lamps).map(Arc::new);
         let mut known: HashMap<Vec<u32>, Arc<Selection>> = HashMap::new();
-        let of_class = |class: usize| {
-            let members = those(&|light| light.rules.lights(class as u16));
-            let selection = known
-                .entry(members)
-                .or_insert_with_key(|members| Arc::new(Selection::new(&lights, members.clone(), scene, strategy)));
-            selection.clone()
+        let mut by_class = |test: &dyn Fn(&Light) -> bool| -> ByClass {
+            let of_class = |class: usize| {
+                let members = those(&|light| light.rules.lights(class as u16) && test(light));
+                let selection = known
+                    .entry(members)
+                    .or_insert_with_key(|members| Arc::new(Selection::new(&lights, members.clone(), scene, strategy)));
+                selection.clone()
+            };
+            (0..classes.clamp(1, 1 << 16)).map(of_class).collect()
         };
-        let selections = (0..classes.clamp(1, 1 << 16)).map(of_class).collect();
-        Self { lights, background, lamps, lamp_tree, selections }
+        let selections = by_class(&|_| true);
+        let is_of = |light: &Light, group: usize| light.rules.group.map(usize::from) == Some(group);
+        let mut of_group = |group: usize| by_class(&|light| is_of(light, group) && light.rules.seen.diffuse);
+        let of_groups =
+            of_groups.iter().enumerate().map(|(i, asked)| if *asked { of_group(i) } else { Vec::new() }).collect();
+        Self { lights, background, lamps, lamp_tree, selections, of_groups }
     }
 
     /// True where nothing shines.
@@ -98,6 +116,11 @@ impl LightSet {
     /// Chooses a light for `at` by `u`; `None` where none can reach it.
     pub fn choose(&self, at: &Receiver, u: f32) -> Option<Choice> {
         self.selections.get(usize::from(at.class))?.choose(&self.lights, at, u)
+    }
+
+    /// Chooses a light of `group` for `at` by `u`; `None` where none of them can reach it.
+    pub fn choose_of_group(&self, group: usize, at: &Receiver, u: f32) -> Option<Choice> {
+        self.of_groups.get(group)?.get(usize::from(at.class))?.choose(&self.lights, at, u)
     }
 
     /// Probability with which [`LightSet::choose`] at `at` chooses `light`.

@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::{Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
+use super::{Decay, Emitter, EmitterHit, LightBounds, LightSample, Profile, Receiver, end_before, profile};
 use crate::math::{Bounds, DVec3, Frame, Rgb, Vec3, orthonormal_pair};
 use crate::sampling::warp;
 
@@ -193,6 +193,10 @@ impl Emitter for Sphere {
 
     fn bounds(&self) -> Option<LightBounds> {
         Some(self.light_bounds())
+    }
+
+    fn decay(&self) -> Decay {
+        profile::decay(self.profile.as_deref())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {

@@ -8,11 +8,13 @@
 
 mod build;
 mod cluster;
+mod decay;
 mod node;
 
 use super::bounds::Asked;
-use super::{LightBounds, Receiver};
+use super::{Decay, LightBounds, Receiver};
 use crate::math::{Bounds, ONE_MINUS_EPSILON, Vec3};
+use decay::Decays;
 use node::{Child, Node};
 
 pub(super) use node::{LARGEST, Weights};
@@ -30,6 +32,8 @@ pub struct LightTree {
     /// For each item, the slots to take from the root on, lowest bits first, under a leading 1; 0 for
     /// items that do not shine.
     trails: Vec<u64>,
+    /// For each node, how the lights below decay; empty where all do as in nature.
+    decays: Vec<Decays>,
     bounds: LightBounds,
 }
 
@@ -60,7 +64,15 @@ impl LightTree {
                 }
             }
         }
-        Some(Self { nodes, trails, bounds })
+        Some(Self { nodes, trails, decays: Vec::new(), bounds })
+    }
+
+    /// A tree over `items` with a decay each.
+    pub(super) fn decaying(items: &[LightBounds], decays: &[Decay]) -> Option<Self> {
+        let tree = Self::new(items)?;
+        let size = tree.bounds.bounds.extent().length();
+        let decays = decay::of_nodes(&tree.nodes, items, decays, size);
+        Some(Self { decays, ..tree })
     }
 
     /// Bounds of everything.
@@ -91,7 +103,12 @@ impl LightTree {
 
     /// Odds of the root's children.
     pub(super) fn weigh(&self, at: &Asked) -> Weights {
-        self.nodes[0].weigh(at)
+        self.weigh_node(0, at)
+    }
+
+    #[inline]
+    fn weigh_node(&self, node: usize, at: &Asked) -> Weights {
+        self.nodes[node].weigh(at, self.decays.get(node))
     }
 
     pub(super) fn sample_from(&self, at: &Asked, root: &Weights, u: f64) -> Option<ChosenItem> {
@@ -108,7 +125,7 @@ impl LightTree {
                 Child::Node(i) => node = i as usize,
                 Child::None => return None,
             }
-            weights = self.nodes[node].weigh(at);
+            weights = self.weigh_node(node, at);
         }
     }
 
@@ -117,7 +134,7 @@ impl LightTree {
         let (mut node, mut pmf) = (0, 1.0_f32);
         while trail > 1 {
             let slot = (trail & 7) as usize;
-            let share = self.nodes[node].weigh(at).pmf(slot);
+            let share = self.weigh_node(node, at).pmf(slot);
             if share == 0.0 {
                 return 0.0;
             }
@@ -152,7 +169,8 @@ impl LightTree {
 
     /// Memory held, in bytes.
     pub fn bytes(&self) -> usize {
-        std::mem::size_of_val(self.nodes.as_slice()) + std::mem::size_of_val(self.trails.as_slice())
+        let (nodes, trails) = (self.nodes.as_slice(), self.trails.as_slice());
+        std::mem::size_of_val(nodes) + std::mem::size_of_val(trails) + std::mem::size_of_val(self.decays.as_slice())
     }
 }
 

@@ -5,7 +5,8 @@
 //!
 //! No frame is continuous over all directions. Theirs turns where a coordinate changes its sign: a line
 //! across floors and spheres at which the samples of a pixel fall into two halves, so that noise shows
-//! it. Here the turn is a small circle around straight down, where few normals and lights are.
+//! it. Here the turn is a small circle around one direction, and frames twist the less, the farther they
+//! are from it: straight down for lights, away from the viewer for surfaces.
 
 use super::{DVec3, Vec3};
 
@@ -45,6 +46,22 @@ impl Frame {
         }
     }
 
+    /// A frame around the unit vector `n`, which varies smoothly with it save at one circle around
+    /// `−view.n`, and is `view` itself at `view.n`: normals that face a viewer twist it least, which keeps
+    /// the points of a pixel stratified where normals differ within the pixel.
+    pub fn from_z_facing(n: Vec3, view: &Self) -> Self {
+        let local = view.to_local(n);
+        // As `from_z`, with z for its y.
+        let sign = if local.z < DOWN as f32 { -1.0 } else { 1.0 };
+        let a = -1.0 / (sign + local.z);
+        let b = local.x * local.y * a;
+        Self {
+            s: view.to_world(Vec3::new(1.0 + sign * local.x * local.x * a, sign * b, -sign * local.x)),
+            t: view.to_world(Vec3::new(b, sign + local.y * local.y * a, -local.y)),
+            n,
+        }
+    }
+
     /// A frame around the unit vector `n` whose x axis lies in the plane of `n` and `tangent`;
     /// as [`Frame::from_z`] where the tangent is null, not finite or parallel to `n`.
     pub fn from_z_and_tangent(n: Vec3, tangent: Vec3) -> Self {
@@ -80,13 +97,38 @@ mod tests {
             let r = (1.0 - z * z).sqrt();
             let phi = 2.399_963 * i as f32;
             let n = Vec3::new(r * phi.cos(), r * phi.sin(), z).normalize();
-            let (s, t) = orthonormal_pair(n.as_dvec3());
-            assert!((s.cross(t) - n.as_dvec3()).length() < 1e-6);
-            for f in [Frame::from_z(n), Frame::from_z_and_tangent(n, Vec3::new(0.3, -0.2, 0.9))] {
+            let unit = n.as_dvec3().normalize();
+            let (s, t) = orthonormal_pair(unit);
+            assert!((s.cross(t) - unit).length() < 1e-14 && (s.length() - 1.0).abs() < 1e-14);
+            let view = Frame::from_z(Vec3::new(0.6, 0.0, 0.8));
+            for f in [
+                Frame::from_z(n),
+                Frame::from_z_facing(n, &view),
+                Frame::from_z_and_tangent(n, Vec3::new(0.3, -0.2, 0.9)),
+            ] {
                 assert!((f.s.cross(f.t) - f.n).length() < 1e-5);
                 assert!((f.s.length() - 1.0).abs() < 1e-5 && f.s.dot(f.n).abs() < 1e-5);
                 let v = Vec3::new(0.1, -0.7, 0.4);
                 assert!((f.to_world(f.to_local(v)) - v).length() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn facing_frames_start_from_the_view_and_vary_smoothly() {
+        let view = Frame::from_z_and_tangent(Vec3::new(0.6, 0.0, 0.8), Vec3::Y);
+        let same = Frame::from_z_facing(view.n, &view);
+        assert!((same.s - view.s).length() < 1e-6 && (same.t - view.t).length() < 1e-6);
+        // All around the view's horizon and down to 25 degrees from its back, in steps of a degree.
+        for polar in [90.0_f32, 120.0, 154.0] {
+            let (sin, cos) = polar.to_radians().sin_cos();
+            let at = |degrees: i32| {
+                let (y, x) = (degrees as f32).to_radians().sin_cos();
+                Frame::from_z_facing(view.to_world(Vec3::new(sin * x, sin * y, cos)), &view)
+            };
+            for degrees in 0..360 {
+                let (a, b) = (at(degrees), at(degrees + 1));
+                assert!((a.s - b.s).length() < 0.05, "{polar} {degrees}: {a:?} {b:?}");
             }
         }
     }

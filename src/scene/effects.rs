@@ -10,7 +10,7 @@ use crate::settings::{EffectsMode, Settings};
 /// Effects that a render simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
-    /// Light that arrives at surfaces.
+    /// Light that arrives at surfaces, but for what the shadow passes of light groups sample.
     pub light: bool,
     /// Light after more than one scattering.
     pub indirect: bool,
@@ -24,11 +24,13 @@ pub struct Effects {
     pub ao: bool,
     /// The shadow and unshadowed passes.
     pub shadow: bool,
+    /// Shadow passes of light groups.
+    pub group_shadows: bool,
     /// The irradiance of surfaces without diffuse reflection, for those.
     pub irradiance: bool,
     /// Some light has a shape of its own that rays may meet.
     pub lamps: bool,
-    /// Some object emits.
+    /// Some object emits, or is unlit.
     pub emissive: bool,
     /// Some light can be found by rays that surfaces have sampled.
     pub found_by_rays: bool,
@@ -58,7 +60,7 @@ impl Effects {
             scene.materials.iter().zip(&used).any(|(material, used)| *used && test(material))
         };
         let lamps = scene.lights.iter().any(|light| light.kind.is_shape());
-        let emissive = any(&emits);
+        let (emissive, unlit) = (any(&emits), any(&|m| m.unlit));
         // A scene without lights gets a dome.
         let in_background = scene.lights.iter().any(|light| light.kind.is_in_background()) || scene.lights.is_empty();
         Self {
@@ -66,8 +68,8 @@ impl Effects {
             cutouts: any(&|m| !is_opaque(scene, m)),
             absorption: any(&absorbs),
             lamps,
-            emissive,
-            found_by_rays: lamps || emissive || in_background || any(&|m| m.unlit),
+            emissive: emissive || unlit,
+            found_by_rays: lamps || emissive || in_background || unlit,
             own_shadows: scene.lights.iter().any(|light| has_own_shadow(&light.links))
                 || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
             occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
@@ -85,6 +87,7 @@ impl Effects {
             occlusion_maps: true,
             ao: passes.needs_ao(),
             shadow: passes.needs_shadow(),
+            group_shadows: passes.needs(Quantity::GroupUnshadowed),
             irradiance: passes.needs_irradiance(),
             lamps: true,
             emissive: true,

@@ -19,7 +19,7 @@ pub mod mask {
     pub const SHADOW: u64 = 16;
     /// Shadow and occlusion rays, for objects whose opacity must be asked.
     pub const SHADOW_CUTOUT: u64 = 32;
-    /// Objects that emit.
+    /// Objects that emit or are unlit.
     pub const EMITTER: u64 = 64;
 
     /// Classes of blockers that shadow linking can tell apart: two bits for each.

@@ -91,7 +91,10 @@ impl Scene {
             n = -n;
         }
         let n = facing(n, if it.front { it.ng } else { -it.ng }, it.wo);
-        tangent.map_or_else(|| Frame::from_z(n), |(t, _)| Frame::from_z_and_tangent(n, t))
+        match tangent {
+            Some((tangent, _)) => Frame::from_z_and_tangent(n, tangent),
+            None => Frame::from_z_facing(n, &self.camera.view().frame()),
+        }
     }
 }
 

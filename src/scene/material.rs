@@ -43,6 +43,17 @@ pub enum Opacity {
     Blend,
 }
 
+impl Opacity {
+    /// Share of a surface that is there where its alpha is `alpha`.
+    pub fn of(self, alpha: f32) -> f32 {
+        match self {
+            Self::Opaque => 1.0,
+            Self::Mask(cutoff) => f32::from(u8::from(alpha >= cutoff)),
+            Self::Blend => alpha.clamp(0.0, 1.0),
+        }
+    }
+}
+
 /// A surface.
 #[derive(Clone, Debug)]
 pub struct Material {
@@ -144,16 +155,14 @@ impl Scene {
     /// Share of light that the surface stops or scatters at `it`; the rest passes.
     pub fn opacity(&self, it: &Interaction) -> f32 {
         let material = self.material(it);
-        let alpha = |it: &Interaction| {
-            let alpha = self.lookups(it).scalar(&material.alpha);
-            alpha * self.vertex_color(it).map_or(1.0, |c| c[3])
-        };
-        match material.opacity {
-            Opacity::Opaque => 1.0,
+        let footprint = match material.opacity {
+            Opacity::Opaque => return 1.0,
             // The threshold of a mean is not the mean of the thresholds: always the finest level.
-            Opacity::Mask(cutoff) => f32::from(u8::from(alpha(&Interaction { footprint: 0.0, ..*it }) >= cutoff)),
-            Opacity::Blend => alpha(it).clamp(0.0, 1.0),
-        }
+            Opacity::Mask(_) => 0.0,
+            Opacity::Blend => it.footprint,
+        };
+        let alpha = self.lookups(&Interaction { footprint, ..*it }).scalar(&material.alpha);
+        material.opacity.of(alpha * self.vertex_color(it).map_or(1.0, |c| c[3]))
     }
 
     /// Radiance that the surface emits at `it`.

@@ -11,6 +11,7 @@ mod links;
 mod materials;
 mod mend;
 mod shaping;
+mod texels;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -21,7 +22,7 @@ use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
-use crate::film::Quantity;
+use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
 use crate::settings::{LightSelection, Settings};
@@ -60,6 +61,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let camera = camera::prepare(&camera_desc, size, origin);
 
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
     let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
@@ -69,10 +71,13 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let build_time = start.elapsed();
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
-    let lights = if effects.light || passes.needs(Quantity::Environment) {
+    let lights = if effects.light || effects.group_shadows || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
-        lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings)
+        let lights =
+            lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings);
+        tell_of_darkness(&desc, &lights, &materials, &mut warnings);
+        lights
     } else {
         Vec::new()
     };
@@ -83,7 +88,8 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         LightSelection::Power => Strategy::Power,
         LightSelection::Uniform => Strategy::Uniform,
     };
-    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
+    let of_groups = passes.needs_shadow_of_groups();
+    let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     let scene = Scene {
         camera,
         size,
@@ -100,6 +106,17 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         textures,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// One warning for passes that the integrator does not compute.
+fn warn_of_passes_left_out(desc: &SceneDesc, settings: &Settings, passes: &PassSet, warnings: &mut Warnings) {
+    let is_left_out = |chosen: &Chosen<'_>| chosen.pass.needs.iter().any(|&q| !settings.integrator.computes(q));
+    let names: Vec<String> = passes.iter().filter(is_left_out).map(|chosen| chosen.name()).collect();
+    if !names.is_empty() {
+        let names = names.join(", ");
+        let what = format!("--integrator ao computes none of these passes, which stay 0 and shadows 1: {names}");
+        warnings.push(&desc.place, what);
+    }
 }
 
 /// Names of the light groups that lamps and emissive objects are in.
@@ -121,9 +138,24 @@ fn render_space_origin(desc: &SceneDesc, camera: DVec3) -> DVec3 {
     (camera / cell).round() * cell
 }
 
-/// The dome of a scene that has no light at all.
+/// True where bad input has taken a light away before it came to be prepared.
+fn lost_light(desc: &SceneDesc) -> bool {
+    desc.lights_left_out > 0 || desc.materials.iter().any(materials::emission_is_lost)
+}
+
+/// Warns where the author's lights have all been left out: another light would be a guess.
+fn tell_of_darkness(desc: &SceneDesc, lights: &[Light], materials: &[super::Material], warnings: &mut Warnings) {
+    let shines = !lights.is_empty() || materials.iter().any(super::Material::emits);
+    // Lamps that are turned down to 0 are meant to be dark.
+    let meant = desc.lights.iter().any(|light| light.kind.color() != [0.0; 3]);
+    if !shines && (meant || lost_light(desc)) {
+        warnings.push(&desc.place, "none of the scene's lights shines: it is rendered in the dark");
+    }
+}
+
+/// The dome of a scene that was given no light at all.
 fn default_dome(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<LightDesc> {
-    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits);
+    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits) || lost_light(desc);
     if lit {
         return None;
     }

@@ -2,6 +2,7 @@
 
 mod assets;
 mod bad;
+mod bad_lights;
 mod blender;
 mod corpus;
 mod deformation;

@@ -283,9 +283,10 @@ impl Square {
 /// save for lights that are black in parts), and samples spread as it says.
 ///
 /// Each of the 256 cells is integrated until halving changes it by less than 2e-5, which at worst adds
-/// up to 5e-3; edges cut cells at random, so that errors add up as their root: 3e-4. The law is held
-/// to 2e-3, in narrow cones plus the part of the light's edge that `f32` directions (steps of 6e-8)
-/// can not tell from the outside.
+/// up to 5e-3; most edges cut cells at random, so that errors add up as their root: 3e-4. Those of a sun
+/// about the axis run along a row of cells, which err alike: 1.1e-3. The law is held to 1.2e-3, in narrow
+/// cones plus the part of the light's edge that `f32` directions (steps of 6e-8) can not tell from the
+/// outside.
 fn density(case: &Case, at: &Receiver, tests: usize) -> Result<(), String> {
     let grid = Grid { nx: 16, ny: 16 };
     let square = Square::new(case);
@@ -298,7 +299,7 @@ fn density(case: &Case, at: &Receiver, tests: usize) -> Result<(), String> {
 
     let n = 1 << 16;
     let found = samples(case, at, Pattern::Sobol, n).flatten().count() as f64 / n as f64;
-    let tolerance = 2e-3 + 6e-8 / case.cone.map_or(PI, |(_, half)| half);
+    let tolerance = 1.2e-3 + 6e-8 / case.cone.map_or(PI, |(_, half)| half);
     if (total - found).abs() > tolerance {
         return Err(format!("density integrates to {total}, {found} of the samples find light, {at:?}"));
     }

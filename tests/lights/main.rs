@@ -9,6 +9,7 @@ mod cylinder;
 mod disk;
 mod distant;
 mod dome;
+mod extremes;
 mod laws;
 mod mesh;
 mod plane;

@@ -8,13 +8,14 @@ use penumbra::math::{Affine3A, Bounds, DVec3, Mat3, Rgb, Vec3};
 use penumbra::shape::{Attribute, Mesh};
 
 use crate::laws::{Case, hold, irradiance_holds};
+use crate::plane::irradiance;
 use crate::random::Random;
 
 const L: f64 = 4.0;
 
 /// The same radiance all over.
 #[derive(Debug)]
-struct Constant(Rgb);
+pub struct Constant(pub Rgb);
 
 impl Emission for Constant {
     fn radiance(&self, _triangle: u32, _uv: [f32; 2]) -> Rgb {
@@ -36,32 +37,10 @@ fn light(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> MeshLight {
     MeshLight::new(Arc::new(emitters), Affine3A::IDENTITY).unwrap()
 }
 
-/// Lambert's formula for the part of a polygon above the horizon of `n`.
-fn lambert(corners: &[DVec3], p: DVec3, n: DVec3) -> f64 {
-    let corners: Vec<DVec3> = corners.iter().map(|c| *c - p).collect();
-    let mut above = Vec::new();
-    for (i, &a) in corners.iter().enumerate() {
-        let b = corners[(i + 1) % corners.len()];
-        let (ha, hb) = (a.dot(n), b.dot(n));
-        if ha >= 0.0 {
-            above.push(a);
-        }
-        if (ha > 0.0 && hb < 0.0) || (ha < 0.0 && hb > 0.0) {
-            above.push(a + (b - a) * (ha / (ha - hb)));
-        }
-    }
-    let edge = |i: usize| {
-        let (a, b): (DVec3, DVec3) = (above[i].normalize(), above[(i + 1) % above.len()].normalize());
-        let cross = a.cross(b);
-        cross.length().atan2(a.dot(b)) * cross.normalize_or_zero().dot(n)
-    };
-    0.5 * (0..above.len()).map(edge).sum::<f64>().abs()
-}
-
 fn lambert_of(light: &MeshLight, p: Vec3, n: Vec3) -> f64 {
     let count = light.emitters().mesh().triangles.len() as u32;
     let corners = (0..count).map(|i| light.corners(i).map(|p| p.as_dvec3()));
-    corners.map(|corners| lambert(&corners, p.as_dvec3(), n.as_dvec3().normalize())).sum()
+    corners.map(|corners| irradiance(&corners, p, n)).sum()
 }
 
 /// Where a ray from `p` along `wi` meets triangle `index`, by f64.
@@ -296,7 +275,7 @@ fn triangles_that_do_not_emit_are_left_out() {
     let light = MeshLight::new(Arc::new(emitters(points, triangles, Some3(lit.clone()))), Affine3A::IDENTITY).unwrap();
     let (p, n) = (Vec3::new(0.1, -0.6, 0.2), Vec3::Y);
     let irradiance =
-        L * lit.iter().map(|&i| lambert(&light.corners(i).map(|p| p.as_dvec3()), p.as_dvec3(), DVec3::Y)).sum::<f64>();
+        L * lit.iter().map(|&i| irradiance(&light.corners(i).map(|p| p.as_dvec3()), p, Vec3::Y)).sum::<f64>();
     hold(&[around(Case {
         hit: Some(hit),
         radiance: Some(radiance),
@@ -357,8 +336,8 @@ fn a_placed_mesh_has_importance_wherever_one_of_its_triangles_lights() {
             let n = at.n.unwrap_or(Vec3::Y);
             let reaches = |i: u32| {
                 let corners = light.corners(i).map(|p| p.as_dvec3());
-                let all = lambert(&corners, at.p.as_dvec3(), n.as_dvec3());
-                let below = lambert(&corners, at.p.as_dvec3(), -n.as_dvec3());
+                let all = irradiance(&corners, at.p, n);
+                let below = irradiance(&corners, at.p, -n);
                 (if at.n.is_some() { all } else { all + below }) > 1e-9
             };
             if (0..32).any(reaches) {

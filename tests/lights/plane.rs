@@ -46,12 +46,9 @@ impl Pose {
     }
 }
 
-/// Irradiance of a polygon of radiance 1 on a surface at `p` with normal `n`: Johann Heinrich Lambert:
-/// *Photometria*, 1760, half the sum over the edges of their angles times `cos` of their planes'
-/// normals, of the part above the horizon.
-pub fn lambert(polygon: &[DVec3], p: Vec3, n: Vec3) -> f64 {
-    let (p, n) = (p.as_dvec3(), n.as_dvec3());
-    let seen: Vec<DVec3> = polygon.iter().map(|v| *v - p).collect();
+/// The part of a polygon above the horizon of a surface at `p` with normal `n`, relative to `p`.
+fn above(polygon: &[DVec3], p: Vec3, n: DVec3) -> Vec<DVec3> {
+    let seen: Vec<DVec3> = polygon.iter().map(|v| *v - p.as_dvec3()).collect();
     let mut above = Vec::new();
     for (i, &a) in seen.iter().enumerate() {
         let b = seen[(i + 1) % seen.len()];
@@ -63,6 +60,15 @@ pub fn lambert(polygon: &[DVec3], p: Vec3, n: Vec3) -> f64 {
             above.push(a + (b - a) * (ha / (ha - hb)));
         }
     }
+    above
+}
+
+/// Irradiance of a polygon of radiance 1 on a surface at `p` with normal `n`: Johann Heinrich Lambert:
+/// *Photometria*, 1760, half the sum over the edges of their angles times `cos` of their planes'
+/// normals, of the part above the horizon.
+pub fn lambert(polygon: &[DVec3], p: Vec3, n: Vec3) -> f64 {
+    let n = n.as_dvec3();
+    let above = above(polygon, p, n);
     let edge = |a: DVec3, b: DVec3| {
         let cross = a.cross(b);
         let sin = cross.length();
@@ -70,6 +76,24 @@ pub fn lambert(polygon: &[DVec3], p: Vec3, n: Vec3) -> f64 {
     };
     let sum: f64 = above.iter().enumerate().map(|(i, &a)| edge(a, above[(i + 1) % above.len()])).sum();
     0.5 * sum.abs()
+}
+
+/// The same from anywhere: Lambert's sum cancels where the polygon is small in its distance. There
+/// the integrand is all but a product of two linear functions of the place, for which the mean of the
+/// middles of a triangle's edges is exact.
+pub fn irradiance(polygon: &[DVec3], p: Vec3, n: Vec3) -> f64 {
+    let size = polygon.iter().map(|v| v.distance(polygon[0])).fold(0.0, f64::max);
+    if size * 1e3 > polygon[0].distance(p.as_dvec3()) {
+        return lambert(polygon, p, n);
+    }
+    let n = n.as_dvec3();
+    let above = above(polygon, p, n);
+    let triangle = |a: DVec3, b: DVec3, c: DVec3| {
+        let cross = (b - a).cross(c - a);
+        let at = |v: DVec3| v.dot(n) * v.dot(cross).abs() / v.length_squared().powi(2);
+        0.5 * (at(0.5 * (a + b)) + at(0.5 * (b + c)) + at(0.5 * (c + a))) / 3.0
+    };
+    above.windows(2).skip(1).map(|edge| triangle(above[0], edge[0], edge[1])).sum()
 }
 
 /// Irradiance at `p` by the midpoint rule over the rectangle of the light's plane from `low` to `high`,
@@ -130,6 +154,12 @@ fn lambert_and_quadrature_agree() {
         let half = DVec2::from(half);
         let sum = quadrature(&pose, [-half, half], 1000, Vec3::ZERO, n, &|_, _| 1.0);
         assert!((sum - exact).abs() < 1e-5 * exact.max(0.01), "{n}: {sum} and {exact}");
+    }
+    // Where the one way ends and the other begins.
+    for n in [Vec3::Y, Vec3::new(0.6, 0.8, 0.0), Vec3::new(1.0, -3e-5, 0.0)] {
+        let corners = Pose::down(DVec3::new(0.03, 1.2e3, 0.02)).corners([0.5, 0.3]);
+        let [near, far] = [lambert, irradiance].map(|way| way(&corners, Vec3::ZERO, n));
+        assert!((near / far - 1.0).abs() < 1e-5, "{n}: {near} and {far}");
     }
     // A disk that faces the point: π r² / (r² + d²).
     let disk = Pose::down(DVec3::Y * 2.0).ellipse([1.0, 1.0], 20_000);

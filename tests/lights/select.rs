@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use penumbra::light::{
-    Cone, Cylinder, Decay, Disk, Distant, Dome, Emitter, Flat, Light, LightBounds, LightSet, LightTree, Point, Profile,
-    Receiver, Rect, Rules, Shaping, Sphere, Spread, Strategy,
+    Cone, Cylinder, Decay, Disk, Distant, Dome, Emitter, Falloff, Flat, Light, LightBounds, LightSet, LightTree, Point,
+    Profile, Receiver, Rect, Rules, Shaping, Sphere, Spread, Strategy,
 };
 use penumbra::math::{Bounds, DMat3, Rgb, Vec3};
 
@@ -293,7 +293,7 @@ fn the_choice_among_lights_has_the_odds_that_it_tells() {
                     lights.push(Distant::new(Vec3::X, 0.1, Rgb::splat(0.2)).into());
                     lights.push(Dome::new(Rgb::splat(0.05), None).into());
                 }
-                let set = LightSet::chosen_by(strategy, lights, SCENE, 1);
+                let set = LightSet::chosen_by(strategy, lights, SCENE, 1, &[]);
                 for _ in 0..3 {
                     let at = Receiver::everywhere(random.in_box(3.0));
                     holds(&format!("{strategy:?}, {count} lights, far: {far}"), &set, &at);
@@ -360,7 +360,8 @@ fn lamp(random: &mut Random, i: usize) -> Light {
     let radiance = Rgb::splat(10.0_f32.powf(random.range(-20.0, 10.0)));
     let half = f64::from(random.range(0.01, 1.5));
     let cone = Shaping { cone: Some(Cone::blend(half, 0.5)), ..Shaping::default() };
-    let range = Decay { range: 2.0, ..Decay::PHYSICAL };
+    let falloff = [Falloff::Quadratic, Falloff::Linear, Falloff::Constant][i / 3 % 3];
+    let range = Decay { range: 2.0, falloff, ..Decay::PHYSICAL };
     let profile = match i % 3 {
         0 => Some(Arc::new(Profile::new(axes(random), cone, Decay::PHYSICAL))),
         1 => Some(Arc::new(Profile::new(axes(random), Shaping::default(), range))),
@@ -416,7 +417,7 @@ fn a_light_that_sends_something_is_chosen_in_any_scene() {
         for strategy in [Strategy::Tree, Strategy::Power, Strategy::Uniform] {
             let mut lights: Vec<Light> = (0..count).map(|i| lamp(&mut random, i)).collect();
             lights.push(Distant::new(random.direction(), 0.0, Rgb::splat(1e-3)).into());
-            let set = LightSet::chosen_by(strategy, lights, SCENE, 1);
+            let set = LightSet::chosen_by(strategy, lights, SCENE, 1, &[]);
             for _ in 0..100 {
                 let at = random.receiver(2.0);
                 for (i, light) in set.iter().enumerate() {
@@ -432,6 +433,95 @@ fn a_light_that_sends_something_is_chosen_in_any_scene() {
         }
     }
     assert!(arrived > 10_000, "{arrived}");
+}
+
+fn decaying(p: Vec3, intensity: f32, decay: Decay) -> Light {
+    let profile = Profile::new(DMat3::IDENTITY, Shaping::default(), decay);
+    Point { profile: Some(Arc::new(profile)), ..point(p, intensity) }.into()
+}
+
+/// Decays that lights take in turn: each law alone, all of them, and different ranges.
+fn decays() -> Vec<(&'static str, Vec<Decay>)> {
+    let law = |falloff| Decay { falloff, ..Decay::PHYSICAL };
+    let polynomial = |kc, kl, kq| law(Falloff::Polynomial { kc, kl, kq });
+    let laws = [
+        ("quadratic", law(Falloff::Quadratic)),
+        ("linear", law(Falloff::Linear)),
+        ("none", law(Falloff::Constant)),
+        ("polynomial", polynomial(1.0, 0.5, 0.1)),
+        ("nearly none", polynomial(1.0, 1e-3, 1e-5)),
+        ("smooth", Decay { smooth: 4.0, ..Decay::PHYSICAL }),
+        ("smooth, none", Decay { smooth: 4.0, ..law(Falloff::Constant) }),
+        ("range", Decay { range: 60.0, ..Decay::PHYSICAL }),
+        ("range, none", Decay { range: 60.0, ..law(Falloff::Constant) }),
+    ];
+    let ranges = (0..13).map(|k| Decay { range: 1.5_f64.powi(k * 7 % 13), ..Decay::PHYSICAL });
+    let mut decays: Vec<_> = laws.into_iter().map(|(name, decay)| (name, vec![decay])).collect();
+    decays.push(("mixed", laws.map(|(_, decay)| decay).to_vec()));
+    decays.push(("ranges", ranges.collect()));
+    decays
+}
+
+/// Variance of one choice among points in units of the square of their irradiance at `at`, exact; by
+/// the odds of `set`, uniform, and by the odds of a scan over all.
+fn variances(set: &LightSet, at: &Receiver) -> [f64; 3] {
+    let lights: Vec<(f64, f64, f64)> = (0..set.len() as u32)
+        .filter_map(|i| {
+            let light = &set.get(i).emitter;
+            let sample = light.sample_li(at, 0.5, [0.5; 2])?;
+            let e = f64::from(sample.li.luminance() * at.n.map_or(1.0, |n| n.dot(sample.wi).max(0.0)));
+            (e > 0.0).then(|| (e, f64::from(set.pmf(at, i)), f64::from(light.importance(at))))
+        })
+        .collect();
+    let sum = |f: &dyn Fn(&(f64, f64, f64)) -> f64| lights.iter().map(f).sum::<f64>();
+    let (total, importance) = (sum(&|l| l.0), sum(&|l| l.2));
+    let squares = [
+        sum(&|&(e, pmf, _)| e * e / pmf),
+        sum(&|&(e, ..)| e * e * set.len() as f64),
+        sum(&|&(e, _, weight)| e * e * importance / weight),
+    ];
+    squares.map(|squares| squares / (total * total) - 1.0)
+}
+
+#[test]
+fn near_and_far_lights_of_any_decay_are_chosen_well() {
+    let mut random = Random::new(11);
+    for (name, decays) in decays() {
+        for count in [34, 1000] {
+            // Half of the lights at half a metre, half at 50 m.
+            let lights = (0..count).map(|i| {
+                let dist = if i % 2 == 0 { 0.5 } else { 50.0 };
+                decaying(random.direction() * dist, 1.0, decays[i % decays.len()])
+            });
+            let set = LightSet::new(lights.collect(), SCENE, 1);
+            let at = Receiver::everywhere(random.in_box(0.02));
+            let [tree, uniform, scan] = variances(&set, &at);
+            // The scan knows these lights exactly. A tree of quadratic ones has 0.36 here.
+            assert!(scan < 1e-3 && tree < 0.65, "{name}, {count}: {tree}, scan {scan}");
+            assert!(tree < uniform + 0.02, "{name}, {count}: {tree}, uniform {uniform}");
+            if !name.starts_with("range") {
+                holds(&format!("{name}, {count} lights"), &set, &at);
+            }
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_lights_of_any_decay_are_chosen_well() {
+    let mut random = Random::new(12);
+    for (name, decays) in decays() {
+        let lights = (0..10_000).map(|i| decaying(random.in_box(10.0), 0.1 + random.unit(), decays[i % decays.len()]));
+        let set = LightSet::new(lights.collect(), SCENE, 1);
+        let mut sums = [0.0; 3];
+        for _ in 0..20 {
+            let at = Receiver { n: Some(random.direction()), ..Receiver::everywhere(random.in_box(10.0)) };
+            sums.iter_mut().zip(variances(&set, &at)).for_each(|(sum, v)| *sum += v / 20.0);
+        }
+        // 0.23 for quadratic ones; those out of their range are told from others by single boxes only.
+        let [tree, uniform, scan] = sums;
+        let most = if name.starts_with("range") { 1.0 } else { 0.5 };
+        assert!(tree < most && tree < 0.05 * uniform, "{name}: {tree}, uniform {uniform}, scan {scan}");
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::fields::Fields;
+use super::json::Node;
 use super::lamp::{self, Lamp};
 use crate::desc::{LightLinks, Visibility};
 use crate::error::{Place, Warnings};
@@ -18,6 +19,8 @@ use crate::error::{Place, Warnings};
 pub(super) struct Penumbra {
     /// A light at the node.
     pub light: Option<Lamp>,
+    /// True where it names a light, also one that can't be read.
+    names_light: bool,
     /// Kinds of ray for which it says whether they see the node's meshes and lights.
     visibility: [Option<bool>; 5],
     group: Option<Arc<str>>,
@@ -61,8 +64,10 @@ impl Penumbra {
     }
 
     fn of(mut fields: Fields<'_>) -> Self {
+        let light = fields.object("light").map(lamp::read);
         let penumbra = Self {
-            light: fields.object("light").and_then(lamp::read),
+            names_light: light.is_some(),
+            light: light.flatten(),
             visibility: fields.object("visibility").map(visibility).unwrap_or_default(),
             group: fields.text("light_group").map(Arc::from),
             cast_shadow: fields.flag("cast_shadow"),
@@ -83,6 +88,13 @@ impl Penumbra {
             transmission: transmission.unwrap_or(visibility.transmission),
             shadow: shadow.unwrap_or(visibility.shadow),
         }
+    }
+
+    /// True where `node`, whose extras these are, has a light in one way or another.
+    pub fn gives_light(&self, node: &Node) -> bool {
+        let punctual = node.extensions.light.as_ref().and_then(|light| light.light);
+        let measured = node.extensions.ies.as_ref().and_then(|light| light.light);
+        self.names_light || punctual.or(measured).is_some()
     }
 
     /// Rules of the node's light, but for those that name other nodes.

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use serde_json::Value;
 
 use super::fields::{Fields, three};
+use super::light::tinted;
 use crate::desc::{ConeDesc, DecayDesc, DecayLaw, LightKind, ShapingDesc};
 
 /// A file that a light uses.
@@ -41,19 +42,19 @@ const KINDS: &str = "point, sphere, rect, disk, cylinder, distant, dome";
 /// The light; `None`, after a warning, where it is none.
 pub(super) fn read(mut fields: Fields<'_>) -> Option<Lamp> {
     let Some(kind) = fields.text("type") else {
-        fields.tell("type", &format!("is missing: there is no light here; known are {KINDS}"));
+        fields.tell("type", &format!("is missing: the light is left out; known are {KINDS}"));
         return None;
     };
     let kind = match kind {
-        "point" => LightKind::Point { intensity: emission(&mut fields, &[("intensity", 1.0), ("power", 0.25 / PI)])? },
-        "sphere" => sphere(&mut fields)?,
-        "rect" => rect(&mut fields)?,
-        "disk" => disk(&mut fields)?,
-        "cylinder" => cylinder(&mut fields)?,
-        "distant" => distant(&mut fields)?,
-        "dome" => LightKind::Dome { radiance: emission(&mut fields, &[("radiance", 1.0)])?, image: None },
+        "point" => LightKind::Point { intensity: emission(&mut fields, &[("intensity", 1.0), ("power", 0.25 / PI)]) },
+        "sphere" => sphere(&mut fields),
+        "rect" => rect(&mut fields),
+        "disk" => disk(&mut fields),
+        "cylinder" => cylinder(&mut fields),
+        "distant" => distant(&mut fields),
+        "dome" => LightKind::Dome { radiance: emission(&mut fields, &[("radiance", 1.0)]), image: None },
         other => {
-            fields.tell("type", &format!("'{other}' is not known: there is no light here; known are {KINDS}"));
+            fields.tell("type", &format!("'{other}' is not known: the light is left out; known are {KINDS}"));
             return None;
         }
     };
@@ -80,8 +81,8 @@ pub(super) fn read(mut fields: Fields<'_>) -> Option<Lamp> {
 }
 
 /// The first of `units` that is given, times its factor and the color; 1 of the first one unless set.
-/// `None`, after a warning, where the light has no size to shine with.
-fn emission(fields: &mut Fields<'_>, units: &[(&'static str, f64)]) -> Option<[f64; 3]> {
+/// A factor that is infinite is that of a light without size: it is told where the light is prepared.
+fn emission(fields: &mut Fields<'_>, units: &[(&'static str, f64)]) -> [f64; 3] {
     let mut found: Option<(&str, f64, [f64; 3])> = None;
     for &(key, factor) in units {
         let Some(value) = fields.color(key) else { continue };
@@ -90,28 +91,25 @@ fn emission(fields: &mut Fields<'_>, units: &[(&'static str, f64)]) -> Option<[f
             Some((first, ..)) => fields.tell(key, &format!("is ignored: {first} is given, too")),
         }
     }
-    let (key, factor, value) = found.unwrap_or((units[0].0, units[0].1, [1.0; 3]));
-    if !factor.is_finite() {
-        fields.tell(key, "can't come from a light of size 0: the light is left out");
-        return None;
-    }
+    let (_, factor, value) = found.unwrap_or((units[0].0, units[0].1, [1.0; 3]));
+    let factor = if factor.is_finite() { factor } else { 1.0 };
     let color = fields.color("color").unwrap_or([1.0; 3]);
-    Some(std::array::from_fn(|i| value[i] * factor * color[i]))
+    std::array::from_fn(|i| tinted(value[i] * factor, color[i]))
 }
 
 /// Radiance of a surface of `area` that emits diffusely.
-fn surface(fields: &mut Fields<'_>, area: f64) -> Option<[f64; 3]> {
+fn surface(fields: &mut Fields<'_>, area: f64) -> [f64; 3] {
     emission(fields, &[("radiance", 1.0), ("power", 1.0 / (PI * area))])
 }
 
 /// A sphere without radius whose power is given is a point, as in Blender.
-fn sphere(fields: &mut Fields<'_>) -> Option<LightKind> {
+fn sphere(fields: &mut Fields<'_>) -> LightKind {
     let radius = fields.number("radius").unwrap_or(0.5);
     let facing = fields.flag("facing").unwrap_or(false);
-    if radius == 0.0 {
-        return Some(LightKind::Point { intensity: emission(fields, &[("power", 0.25 / PI)])? });
+    if radius == 0.0 && fields.value("power").is_some() {
+        return LightKind::Point { intensity: emission(fields, &[("power", 0.25 / PI)]) };
     }
-    Some(LightKind::Sphere { radius, radiance: surface(fields, 4.0 * PI * radius * radius)?, facing })
+    LightKind::Sphere { radius, radiance: surface(fields, 4.0 * PI * radius * radius), facing }
 }
 
 /// Width and height, spread, two-sidedness and the sides that share the power.
@@ -123,31 +121,31 @@ fn panel(fields: &mut Fields<'_>) -> ([f64; 2], f64, bool, f64) {
     ([width, height], fields.number("spread").unwrap_or(PI), two_sided, sides)
 }
 
-fn rect(fields: &mut Fields<'_>) -> Option<LightKind> {
+fn rect(fields: &mut Fields<'_>) -> LightKind {
     let ([width, height], spread, two_sided, sides) = panel(fields);
-    let radiance = surface(fields, sides * (width * height).abs())?;
-    Some(LightKind::Rect { width, height, radiance, spread, two_sided, image: None })
+    let radiance = surface(fields, sides * (width * height).abs());
+    LightKind::Rect { width, height, radiance, spread, two_sided, image: None }
 }
 
-fn disk(fields: &mut Fields<'_>) -> Option<LightKind> {
+fn disk(fields: &mut Fields<'_>) -> LightKind {
     let ([width, height], spread, two_sided, sides) = panel(fields);
-    let radiance = surface(fields, sides * 0.25 * PI * (width * height).abs())?;
-    Some(LightKind::Disk { width, height, radiance, spread, two_sided })
+    let radiance = surface(fields, sides * 0.25 * PI * (width * height).abs());
+    LightKind::Disk { width, height, radiance, spread, two_sided }
 }
 
-fn cylinder(fields: &mut Fields<'_>) -> Option<LightKind> {
+fn cylinder(fields: &mut Fields<'_>) -> LightKind {
     let radius = fields.number("radius").unwrap_or(0.5);
     let length = fields.number("length").unwrap_or(1.0);
-    Some(LightKind::Cylinder { radius, length, radiance: surface(fields, (2.0 * PI * radius * length).abs())? })
+    LightKind::Cylinder { radius, length, radiance: surface(fields, (2.0 * PI * radius * length).abs()) }
 }
 
-fn distant(fields: &mut Fields<'_>) -> Option<LightKind> {
+fn distant(fields: &mut Fields<'_>) -> LightKind {
     let angle = fields.number("angle").unwrap_or(0.0);
     let sin = (0.5 * angle.clamp(0.0, PI)).sin();
     // A radiance needs a disk to come from.
     let units = [("irradiance", 1.0), ("radiance", PI * sin * sin)];
     let units = if angle > 0.0 { &units[..] } else { &units[..1] };
-    Some(LightKind::Distant { irradiance: emission(fields, units)?, angle })
+    LightKind::Distant { irradiance: emission(fields, units), angle }
 }
 
 fn cone(fields: &mut Fields<'_>) -> Option<ConeDesc> {

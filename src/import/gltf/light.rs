@@ -4,7 +4,7 @@
 //! as in Blender's exporter. That exporter has two further modes, in which point and spot carry
 //! P/(4π) ("unitless", compat) or P ("raw") for a lamp of P watts, and the sun its strength in W/m².
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use serde_json::Value;
 
@@ -15,7 +15,14 @@ use crate::desc::{ConeDesc, DecayDesc, LightKind, ShapingDesc};
 /// Lumens of a watt, by which physical glTF units and radiometric ones are exchanged.
 pub(super) const LUMENS_PER_WATT: f64 = 683.0;
 
-/// What `light` emits, or why it can't. `extras` are those of its node: the extension has no size for
+/// A strength times a channel of a color, negative where either is: two wrongs make no light.
+pub(super) fn tinted(strength: f64, color: f64) -> f64 {
+    let product = strength * color;
+    if strength < 0.0 { -product.abs() } else { product }
+}
+
+/// What `light` emits, or why it can't; bad numbers stay, and are mended and told where the light is
+/// prepared. `extras` are those of its node: the extension has no size for
 /// the sun, which stands there as `angle`, the full angle in radians (Blender's exporter writes an
 /// object's custom properties so).
 pub(super) fn kind(
@@ -28,24 +35,18 @@ pub(super) fn kind(
         LightUnits::Compat => (1.0, 1.0),
         LightUnits::Raw => (1.0 / (4.0 * PI), 1.0),
     };
-    let scaled = |factor: f64| light.color.map(|c| (c * light.intensity * factor).max(0.0));
-    let range = light.range.filter(|range| *range > 0.0).unwrap_or(f64::INFINITY);
-    let decay = DecayDesc { range, ..DecayDesc::default() };
+    let scaled = |factor: f64| light.color.map(|c| tinted(light.intensity * factor, c));
+    let decay = DecayDesc { range: light.range.unwrap_or(f64::INFINITY), ..DecayDesc::default() };
     let point = LightKind::Point { intensity: scaled(radial) };
     match light.kind.as_str() {
         "point" => Ok((point, ShapingDesc::default(), decay)),
         "spot" => {
-            let outer = light.spot.outer_cone_angle;
-            if outer.is_nan() || outer <= 0.0 {
-                return Err(format!("a spot light with an outer cone of {outer} radians emits nothing"));
-            }
-            let outer = outer.min(FRAC_PI_2);
-            let inner = light.spot.inner_cone_angle.clamp(0.0, outer);
-            let cone = Some(ConeDesc::Ramp { inner, outer });
+            let cone = ConeDesc::Ramp { inner: light.spot.inner_cone_angle, outer: light.spot.outer_cone_angle };
+            let cone = Some(cone);
             Ok((point, ShapingDesc { cone, ..ShapingDesc::default() }, decay))
         }
         "directional" => {
-            let angle = extras["angle"].as_f64().filter(|angle| (0.0..=PI).contains(angle)).unwrap_or(0.0);
+            let angle = extras["angle"].as_f64().unwrap_or(0.0);
             let kind = LightKind::Distant { irradiance: scaled(distant), angle };
             Ok((kind, ShapingDesc::default(), DecayDesc::default()))
         }
@@ -81,21 +82,21 @@ mod tests {
     }
 
     #[test]
-    fn cones_are_ordered() {
-        let mut spot = light("spot", 1.0);
-        spot.spot.inner_cone_angle = 2.0;
-        spot.spot.outer_cone_angle = 3.0;
-        let (_, shaping, _) = kind(&spot, &Value::Null, LightUnits::Spec).unwrap();
-        let Some(ConeDesc::Ramp { inner, outer }) = shaping.cone else { panic!() };
-        assert_eq!((inner, outer), (FRAC_PI_2, FRAC_PI_2));
-        spot.spot.outer_cone_angle = 0.0;
-        assert!(kind(&spot, &Value::Null, LightUnits::Spec).is_err());
+    fn a_light_of_unknown_type_is_none() {
         assert!(kind(&light("tube", 1.0), &Value::Null, LightUnits::Spec).is_err());
     }
 
     #[test]
+    fn a_negative_factor_is_not_made_good_by_another() {
+        assert_eq!(
+            [(2.0, 3.0), (-2.0, 3.0), (2.0, -3.0), (-2.0, -3.0)].map(|(a, b)| tinted(a, b)),
+            [6.0, -6.0, -6.0, -6.0]
+        );
+    }
+
+    #[test]
     fn the_suns_size_stands_in_the_extras() {
-        for (extras, expected) in [(r#"{"angle": 0.5}"#, 0.5), (r#"{"angle": -1}"#, 0.0), ("[]", 0.0), ("null", 0.0)] {
+        for (extras, expected) in [(r#"{"angle": 0.5}"#, 0.5), (r#"{"angle": "1"}"#, 0.0), ("[]", 0.0), ("null", 0.0)] {
             let extras: Value = serde_json::from_str(extras).unwrap();
             let distant = kind(&light("directional", 1.0), &extras, LightUnits::Spec);
             let Ok((LightKind::Distant { angle, .. }, ..)) = distant else { panic!() };

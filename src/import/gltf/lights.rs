@@ -12,7 +12,7 @@ use super::document::label;
 use super::extras::Penumbra;
 use super::json::{IesProfile, Image, NodeIes};
 use super::lamp::{IesUse, Lamp, Source};
-use super::light::{self, LUMENS_PER_WATT};
+use super::light::{self, LUMENS_PER_WATT, tinted};
 use super::node::PlacedNode;
 use super::texture;
 use super::uri::{self, Target};
@@ -103,8 +103,8 @@ impl<'a> Lights<'a> {
                 (SUBSTITUTE, None)
             }
         };
-        let scale = candela * json.multiplier.max(0.0) / LUMENS_PER_WATT;
-        let intensity = json.color.map(|c| c.clamp(0.0, 1.0) * scale);
+        let scale = candela * json.multiplier / LUMENS_PER_WATT;
+        let intensity = json.color.map(|c| tinted(scale, c));
         Some((LightKind::Point { intensity }, ShapingDesc { ies, ..ShapingDesc::default() }, DecayDesc::default()))
     }
 

@@ -51,8 +51,12 @@ impl Converter<'_, '_> {
                 _ => AlphaMode::Opaque,
             },
             double_sided: json.double_sided,
-            emission: self.color(json.emissive_factor, json.emissive_texture.as_ref()),
-            emission_strength: x.emissive_strength.as_ref().map_or(1.0, |e| e.emissive_strength.max(0.0)),
+            // Bad numbers stay: they are mended and told where the light is prepared.
+            emission: ColorInput {
+                factor: json.emissive_factor,
+                texture: self.textures.get(json.emissive_texture.as_ref(), ColorSpace::Srgb),
+            },
+            emission_strength: x.emissive_strength.as_ref().map_or(1.0, |e| e.emissive_strength),
             normal: self.normal(json.normal_texture.as_ref()),
             occlusion: json.occlusion_texture.as_ref().and_then(|info| {
                 let texture = self.textures.get(Some(info), ColorSpace::Linear)?;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::extras::Penumbra;
 use super::json::{Node, Root};
 use crate::error::{Place, Warnings};
 use crate::math::{DAffine3, DMat3, DQuat, DVec3};
@@ -31,6 +32,8 @@ pub(super) struct Hierarchy {
     pub nodes: Vec<PlacedNode>,
     /// Node to world for each node of the file; `None` for those that no root leads to.
     pub world: Vec<Option<DAffine3>>,
+    /// Lights at nodes that would be visible if they could be placed.
+    pub lights_left_out: usize,
 }
 
 /// A node to visit.
@@ -38,7 +41,10 @@ struct Visit {
     node: usize,
     parent: Option<Arc<Ancestor>>,
     world: DAffine3,
+    /// Part of the scene and not hidden.
     shown: bool,
+    /// False at and below a node that can't be placed.
+    placed: bool,
     depth: u32,
 }
 
@@ -51,7 +57,7 @@ struct Ancestor {
 /// Walks the default scene; then what is left, out of sight, for the joints of skins.
 pub(super) fn walk(root: &Root, place: &Place, warnings: &mut Warnings) -> Hierarchy {
     let count = root.nodes.len();
-    let mut hierarchy = Hierarchy { nodes: Vec::new(), world: vec![None; count] };
+    let mut hierarchy = Hierarchy { nodes: Vec::new(), world: vec![None; count], lights_left_out: 0 };
     let mut has_parent = vec![false; count];
     for &child in root.nodes.iter().flat_map(|node| &node.children) {
         if let Some(flag) = has_parent.get_mut(child) {
@@ -80,7 +86,7 @@ impl Hierarchy {
     fn visit(&mut self, root: &Root, roots: &[usize], shown: bool, place: &Place, warnings: &mut Warnings) {
         let mut stack: Vec<Visit> = Vec::new();
         for &node in roots.iter().rev() {
-            stack.push(Visit { node, parent: None, world: DAffine3::IDENTITY, shown, depth: 0 });
+            stack.push(Visit { node, parent: None, world: DAffine3::IDENTITY, shown, placed: true, depth: 0 });
         }
         while let Some(visit) = stack.pop() {
             let Some(node) = root.nodes.get(visit.node) else {
@@ -102,14 +108,21 @@ impl Hierarchy {
             let here = place.at(&path);
             let world = visit.world * local(node, &here, warnings);
             self.world[visit.node] = Some(world);
-            let mut shown = visit.shown && node.extensions.visibility.as_ref().is_none_or(|v| v.visible);
-            if shown && !usable(&world) {
-                warnings.push(&here, "the transform is singular or not finite; the node and its children are left out");
-                shown = false;
+            let shown = visit.shown && node.extensions.visibility.as_ref().is_none_or(|v| v.visible);
+            let placed = visit.placed && usable(&world);
+            if shown && !placed {
+                let light = Penumbra::read(&node.extras, &here, &mut Warnings::new()).gives_light(node);
+                self.lights_left_out += usize::from(light);
+                if visit.placed {
+                    let what = "the transform is singular or not finite; the node and its children are left out";
+                    warnings.push(&here, what);
+                } else if light {
+                    warnings.push(&here, "the light is left out with the node above it that can't be placed");
+                }
             }
             let name: Arc<str> = name.into();
             let asset = visit.parent.as_ref().map_or_else(|| name.clone(), |parent| parent.asset.clone());
-            if shown {
+            if shown && placed {
                 let asset = asset.clone();
                 self.nodes.push(PlacedNode { node: visit.node, world, name, place: here, asset, depth: visit.depth });
             }
@@ -117,7 +130,7 @@ impl Hierarchy {
                 let parent = Arc::new(Ancestor { path, asset });
                 for &child in node.children.iter().rev() {
                     let parent = Some(parent.clone());
-                    stack.push(Visit { node: child, parent, world, shown, depth: visit.depth + 1 });
+                    stack.push(Visit { node: child, parent, world, shown, placed, depth: visit.depth + 1 });
                 }
             }
         }

@@ -84,6 +84,7 @@ impl Builder<'_> {
             textures: textures.textures,
             images: textures.images,
             variants: root.extensions.variants.variants.iter().map(|v| v.name.clone()).collect(),
+            lights_left_out: hierarchy.lights_left_out,
             ..SceneDesc::default()
         };
         let mut lights = Lights::new(self.reader, self.base_dir, self.place, self.options.light_units);
@@ -97,7 +98,9 @@ impl Builder<'_> {
                 self.instances(node, &penumbra, &meshes.parts[state], &mut scene, warnings)?;
             }
             let (lights, instances) = (first_light..scene.lights.len(), first_instance..scene.instances.len());
-            if penumbra.has_rules() && lights.is_empty() && instances.is_empty() {
+            if lights.is_empty() && penumbra.gives_light(&root.nodes[node.node]) {
+                scene.lights_left_out += 1;
+            } else if penumbra.has_rules() && lights.is_empty() && instances.is_empty() {
                 warnings.push(&node.place, "extras.penumbra: the node has neither a mesh nor a light to apply to");
             }
             links.add(instances, lights, penumbra);

@@ -1,5 +1,6 @@
 //! Eight children side by side: weighed in one loop that compiles to vector instructions.
 
+use super::decay::Decays;
 use crate::light::bounds::{Asked, Lobe};
 use crate::math::{Bounds, Vec3};
 
@@ -105,7 +106,7 @@ impl Node {
     }
 
     #[inline(always)]
-    fn lobe(&self, i: usize) -> Lobe {
+    pub fn lobe(&self, i: usize) -> Lobe {
         Lobe {
             center: [self.center[0][i], self.center[1][i], self.center[2][i]],
             half: [self.half[0][i], self.half[1][i], self.half[2][i]],
@@ -118,12 +119,15 @@ impl Node {
         }
     }
 
-    /// Odds of the children at `at`.
+    /// Odds of the children at `at`, whose lights decay by `decays` or as in nature.
     #[inline]
-    pub fn weigh(&self, at: &Asked) -> Weights {
+    pub fn weigh(&self, at: &Asked, decays: Option<&Decays>) -> Weights {
         let mut odds = [0.0; WIDTH];
         for (i, odds) in odds.iter_mut().enumerate() {
             *odds = self.lobe(i).importance(at);
+        }
+        if let Some(decays) = decays {
+            decays.apply(self, at, &mut odds);
         }
         let sum: f32 = odds.iter().sum();
         let least = sum * LEAST_SHARE;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::light::{Emission, MeshEmitters, MeshLight};
 use crate::math::Rgb;
-use crate::scene::material::ColorInput;
+use crate::scene::material::Opacity;
 use crate::scene::{Instance, Material};
 use crate::shape::Mesh;
 use crate::texture::{Texture, TextureRef};
@@ -17,7 +17,7 @@ const OF_TEXTURE: f32 = 1e-4;
 /// What the mean of a texture with any light counts for at least: coarse levels of eight bits lose it.
 const LEAST_MEAN: f32 = 1e-3;
 
-/// Emitted radiance of a mesh.
+/// Emitted radiance of a mesh: of a surface that is partly open what its rays get on the mean.
 #[derive(Debug)]
 struct MaterialEmission {
     mesh: Arc<Mesh>,
@@ -31,42 +31,74 @@ struct MaterialEmission {
 struct Slot {
     factor: Rgb,
     texture: Option<TextureRef>,
-    /// Least mean radiance of a triangle.
+    opacity: Opacity,
+    alpha: f32,
+    /// Times this channel.
+    alpha_texture: Option<(TextureRef, u8)>,
+    /// Least mean radiance of a triangle whose emission varies.
     least: Rgb,
 }
 
 impl MaterialEmission {
-    fn slot(&self, triangle: u32) -> Slot {
-        self.slots[self.mesh.slot(triangle).min(self.slots.len() - 1)]
+    fn slot(&self, triangle: u32) -> &Slot {
+        &self.slots[self.mesh.slot(triangle).min(self.slots.len() - 1)]
     }
 
-    fn look_up(&self, triangle: u32, barycentrics: [f32; 2], footprint: f32) -> Rgb {
-        let Slot { factor, texture, .. } = self.slot(triangle);
+    /// The texture behind `input`, averaged over `share` of the width of the triangle.
+    fn look_up(&self, input: TextureRef, triangle: u32, barycentrics: [f32; 2], share: f32) -> [f32; 4] {
+        let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return [1.0; 4] };
+        let width = if share > 0.0 { (0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt() } else { 0.0 };
+        input.lookup(&self.textures, uv.to_array(), share * width)
+    }
+
+    fn emitted(&self, triangle: u32, barycentrics: [f32; 2], share: f32) -> Rgb {
+        let Slot { factor, texture, .. } = *self.slot(triangle);
         let Some(input) = texture else { return factor };
-        let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return factor };
-        let [r, g, b, _] = input.lookup(&self.textures, uv.to_array(), footprint);
+        let [r, g, b, _] = self.look_up(input, triangle, barycentrics, share);
         factor * Rgb::new(r, g, b)
+    }
+
+    fn alpha(&self, triangle: u32, barycentrics: [f32; 2], share: f32) -> f32 {
+        let Slot { alpha, alpha_texture, .. } = *self.slot(triangle);
+        let texel = alpha_texture
+            .map_or(1.0, |(input, channel)| self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]);
+        alpha * texel * self.mesh.color(triangle, barycentrics).map_or(1.0, |color| color[3])
+    }
+
+    fn is_constant(&self, triangle: u32) -> bool {
+        let Slot { texture, opacity, alpha_texture, .. } = self.slot(triangle);
+        let is_evenly_open = alpha_texture.is_none() && self.mesh.colors.is_none();
+        texture.is_none() && (*opacity == Opacity::Opaque || is_evenly_open)
     }
 }
 
 impl Emission for MaterialEmission {
     fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb {
-        self.look_up(triangle, uv, 0.0)
+        let emitted = self.emitted(triangle, uv, 0.0);
+        match self.slot(triangle).opacity {
+            Opacity::Opaque => emitted,
+            opacity => emitted * opacity.of(self.alpha(triangle, uv, 0.0)),
+        }
     }
 
-    /// The mip level that the triangle's size in UV calls for, and points around it.
+    /// The mip level that the triangle's size in UV calls for, and points around it. Seen from so far a
+    /// mask is as open as a blend of its alpha.
     fn mean(&self, triangle: u32) -> Rgb {
-        let Slot { factor, texture, least } = self.slot(triangle);
-        let Some(input) = texture else { return factor };
+        let third = 1.0 / 3.0;
+        let &Slot { opacity, least, .. } = self.slot(triangle);
+        if self.is_constant(triangle) {
+            return self.radiance(triangle, [third, third]);
+        }
         if least.is_black() {
             return least;
         }
-        let footprint = (0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt();
-        let third = 1.0 / 3.0;
-        let mean = self.look_up(triangle, [third, third], footprint);
+        let at = |uv: [f32; 2], share: f32| match opacity {
+            Opacity::Opaque => self.emitted(triangle, uv, share),
+            _ => self.emitted(triangle, uv, share) * self.alpha(triangle, uv, share).clamp(0.0, 1.0),
+        };
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];
-        let around: Rgb = points.iter().map(|&uv| self.look_up(triangle, uv, 0.5 * footprint)).sum();
-        mean * 0.7 + around * (0.3 / points.len() as f32) + least
+        let around: Rgb = points.iter().map(|&uv| at(uv, 0.5)).sum();
+        at([third, third], 1.0) * 0.7 + around * (0.3 / points.len() as f32) + least
     }
 }
 
@@ -100,12 +132,18 @@ impl<'a> Emissive<'a> {
 }
 
 fn slot(material: &Material, textures: &[Texture]) -> Slot {
-    let ColorInput { factor, texture } = material.emission;
-    // Light from a surface that is partly open is found by the paths that hit it.
-    let factor = if material.emits() && !material.is_cutout() { factor } else { Rgb::BLACK };
-    let texture = texture.map(|i| material.inputs[usize::from(i)]);
-    let whole = texture.map_or(Rgb::BLACK, |input| mean_of(&textures[input.texture as usize]));
-    Slot { factor, texture, least: factor * whole * OF_TEXTURE }
+    let factor = if material.emits() { material.emission.factor } else { Rgb::BLACK };
+    let input = |i: u8| material.inputs[usize::from(i)];
+    let texture = material.emission.texture.map(input);
+    let whole = texture.map_or(Rgb::WHITE, |input| mean_of(&textures[input.texture as usize]));
+    Slot {
+        factor,
+        texture,
+        opacity: material.opacity,
+        alpha: material.alpha.factor,
+        alpha_texture: material.alpha.texture.map(|(i, channel)| (input(i), channel)),
+        least: factor * whole * OF_TEXTURE,
+    }
 }
 
 /// Mean of a texture, above 0 unless it is black all over.

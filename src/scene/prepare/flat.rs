@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::mend::Mended;
-use crate::desc::{Filter, ImageDesc, LightDesc, LightKind, SceneDesc, TextureDesc, Wrap};
+use super::texels::texels;
+use crate::desc::{ColorSpace, Filter, ImageDesc, LightDesc, LightKind, PixelData, SceneDesc, TextureDesc, Wrap};
 use crate::error::Warnings;
 use crate::light::{AnyEmitter, Disk, Emission, Flat, Rect, Spread};
 use crate::math::Rgb;
@@ -21,7 +22,7 @@ struct Picture {
 impl Emission for Picture {
     fn radiance(&self, _triangle: u32, uv: [f32; 2]) -> Rgb {
         let [r, g, b, _] = self.texture.lookup(uv, 0.0);
-        self.factor * Rgb::new(r, g, b).map(|v| v.max(0.0))
+        self.factor * Rgb::new(r, g, b)
     }
 
     fn mean(&self, _triangle: u32) -> Rgb {
@@ -31,13 +32,7 @@ impl Emission for Picture {
 
 /// The emitter of `light`, a rectangle or an ellipse, of which `flat` tells all but spread, sides and
 /// size; `None` where it emits nothing.
-pub fn prepare(
-    desc: &SceneDesc,
-    light: &LightDesc,
-    flat: Flat,
-    mended: &mut Mended,
-    warnings: &mut Warnings,
-) -> Option<AnyEmitter> {
+pub fn prepare(desc: &SceneDesc, light: &LightDesc, flat: Flat, mended: &mut Mended) -> Option<AnyEmitter> {
     let (LightKind::Rect { width, height, spread, two_sided, .. }
     | LightKind::Disk { width, height, spread, two_sided, .. }) = light.kind
     else {
@@ -48,7 +43,7 @@ pub fn prepare(
     let flat = Flat { spread: cone(spread, mended), two_sided, ..flat };
     let LightKind::Rect { image, .. } = light.kind else { return Some(Disk::new(flat, [x, y]).into()) };
     let Some(image) = image else { return Some(Rect::new(flat, [x, y]).into()) };
-    let picture = picture(&desc.images[image as usize], flat.radiance, mended, warnings)?;
+    let picture = picture(&desc.images[image as usize], flat.radiance, mended)?;
     // The same all over: no need to ask.
     let constant = picture.texture.constant().is_some();
     let rect = Rect::new(Flat { radiance: picture.mean, ..flat }, [x, y]);
@@ -68,12 +63,29 @@ fn cone(angle: f64, mended: &mut Mended) -> Spread {
 }
 
 /// Radiance of `image` times `factor`; `None` for black.
-fn picture(image: &ImageDesc, factor: Rgb, mended: &mut Mended, warnings: &mut Warnings) -> Option<Picture> {
-    let name = &image.name;
-    let made = match Image::new(image.clone(), warnings) {
+fn picture(image: &ImageDesc, factor: Rgb, mended: &mut Mended) -> Option<Picture> {
+    let (texels, is_bad) = texels(image, factor, mended);
+    // The mean of texels is that of what bilinear lookups give, too.
+    let sum = texels.iter().fold([0.0_f64; 3], |sum, t| {
+        let t = t.to_array();
+        std::array::from_fn(|c| sum[c] + f64::from(t[c]))
+    });
+    let mean = factor * Rgb::from(sum.map(|sum| sum / texels.len() as f64));
+    if mean.is_black() {
+        mended.note(format!("its image \"{}\" is black", image.name));
+        return None;
+    }
+    let mut good = image.clone();
+    // A good image keeps its size in memory.
+    if is_bad {
+        let pixels = PixelData::F32(texels.iter().flat_map(|texel| texel.to_array()).collect());
+        good = ImageDesc { channels: 3, color_space: ColorSpace::Linear, pixels, ..good };
+    }
+    // What was wrong with its colors is told already.
+    let made = match Image::new(good, &mut Warnings::new()) {
         Ok(made) => Arc::new(made),
         Err(error) => {
-            mended.note(format!("its image \"{name}\" can't be used ({error})"));
+            mended.note(format!("its image \"{}\" can't be used ({error})", image.name));
             return None;
         }
     };
@@ -84,30 +96,5 @@ fn picture(image: &ImageDesc, factor: Rgb, mended: &mut Mended, warnings: &mut W
         wrap_v: Wrap::Clamp,
         filter: Filter::Linear,
     };
-    let mean = factor * mean(&made, mended);
-    if mean.is_black() {
-        mended.note(format!("its image \"{name}\" is black"));
-        return None;
-    }
     Some(Picture { texture: Texture::new(made, &desc), factor, mean })
-}
-
-/// Mean of what bilinear lookups give, which is that of the texels.
-fn mean(image: &Image, mended: &mut Mended) -> Rgb {
-    let (mut sum, mut negative) = ([0.0_f64; 3], 0_usize);
-    for y in 0..image.height() {
-        for x in 0..image.width() {
-            let texel = image.texel(x, y);
-            for (sum, &value) in sum.iter_mut().zip(&texel[..3]) {
-                *sum += f64::from(value.max(0.0));
-            }
-            negative += usize::from(texel[..3].iter().any(|v| *v < 0.0));
-        }
-    }
-    let texels = f64::from(image.width()) * f64::from(image.height());
-    if negative > 0 {
-        let name = image.name();
-        mended.note(format!("{negative} of {texels} pixels of its image \"{name}\" are negative: taken as 0"));
-    }
-    Rgb::from(sum.map(|sum| sum / texels))
 }

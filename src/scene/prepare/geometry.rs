@@ -58,7 +58,7 @@ pub fn prepare(
             continue;
         };
         let cutout = prepared.materials.iter().any(|&m| materials[m as usize].is_cutout());
-        let emits = prepared.materials.iter().any(|&m| materials[m as usize].emits());
+        let emits = prepared.materials.iter().any(|&m| materials[m as usize].emits() || materials[m as usize].unlit);
         prepared.receiver_class = links.receiver_class(i);
         boxes.push(bvh::Instance {
             blas: instance.mesh,

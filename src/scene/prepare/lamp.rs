@@ -1,5 +1,7 @@
 //! One authored light as an emitter in render space; what can't be so is replaced, with a warning.
 
+use std::f64::consts::PI;
+
 use super::mend::Mended;
 use super::{dome, flat, shaping};
 use crate::desc::{LightDesc, LightKind, SceneDesc};
@@ -10,19 +12,16 @@ use crate::math::{DMat3, DVec3, Mat3, Vec3};
 /// The emitter of `light`; `None` where it emits nothing. All substitutes are told in one warning.
 pub fn prepare(desc: &SceneDesc, light: &LightDesc, origin: DVec3, warnings: &mut Warnings) -> Option<AnyEmitter> {
     let mut mended = Mended::default();
-    let emitter = emitter(desc, light, origin, &mut mended, warnings);
+    let emitter = emitter(desc, light, origin, &mut mended);
     mended.tell(light, emitter.is_none(), warnings);
     emitter
 }
 
-fn emitter(
-    desc: &SceneDesc,
-    light: &LightDesc,
-    origin: DVec3,
-    mended: &mut Mended,
-    warnings: &mut Warnings,
-) -> Option<AnyEmitter> {
-    let color = mended.color(light.kind.color())?;
+fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mended) -> Option<AnyEmitter> {
+    let color = mended.color("intensity", light.kind.color());
+    if color.is_black() {
+        return None;
+    }
     let axes = axes(light, mended);
     let far = matches!(light.kind, LightKind::Distant { .. } | LightKind::Dome { .. });
     let p = if far { Vec3::ZERO } else { position(light, origin, mended)? };
@@ -36,14 +35,17 @@ fn emitter(
             let (radius, length) = (mended.size("radius", radius)?, mended.size("length", length)?);
             Cylinder::new(p, axes.x_axis.as_vec3(), radius, length, color, profile).into()
         }
-        LightKind::Distant { angle, .. } => Distant::new(axes.z_axis.as_vec3(), angle as f32, color).into(),
+        LightKind::Distant { angle, .. } => {
+            let angle = mended.clamped("angle", angle, [0.0, PI]);
+            Distant::new(axes.z_axis.as_vec3(), angle as f32, color).into()
+        }
         LightKind::Dome { image, .. } => {
             let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
-            dome::prepare(desc, light, color, image, orientation, warnings)?.into()
+            dome::prepare(desc, color, image, orientation, mended)?.into()
         }
         LightKind::Rect { .. } | LightKind::Disk { .. } => {
             let flat = Flat { profile, ..Flat::new(light.transform.translation - origin, axes, color) };
-            flat::prepare(desc, light, flat, mended, warnings)?
+            flat::prepare(desc, light, flat, mended)?
         }
     })
 }
@@ -172,9 +174,22 @@ mod tests {
         let taken = mended(&sphere(1.0, [NAN, 2.0, 3.0]), "its intensity is not finite: taken as 0");
         assert_eq!(intensity(taken), luminance([0.0, 2.0, 3.0]));
         left_out(&sphere(1.0, [NAN; 3]), "its intensity is not finite: taken as 0");
-        left_out(&sphere(1.0, [1e300, 0.0, 0.0]), "its intensity is not finite: taken as 0");
+        let taken = mended(&sphere(1.0, [1e300, 0.0, 0.0]), "its intensity is too bright: taken as 1e30");
+        assert_eq!(intensity(taken), luminance([1e30, 0.0, 0.0]));
         let (emitter, said) = prepared(&sphere(1.0, [0.0; 3]));
         assert!(emitter.is_none() && said.is_empty());
+    }
+
+    #[test]
+    fn angles_of_suns_are_mended() {
+        let sun = |angle: f64| light(LightKind::Distant { irradiance: [1.0; 3], angle });
+        for (angle, what, taken) in [
+            (-1.0, "its angle is -1: taken as 0", 0.0),
+            (NAN, "its angle is NaN: taken as 0", 0.0),
+            (7.0, "its angle is 7: taken as 3.141592653589793", PI),
+        ] {
+            assert_eq!(format!("{:?}", mended(&sun(angle), what)), format!("{:?}", prepared(&sun(taken)).0.unwrap()));
+        }
     }
 
     #[test]

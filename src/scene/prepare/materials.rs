@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::mend::Mended;
 use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc};
 use crate::error::Warnings;
 use crate::math::Rgb;
@@ -150,8 +151,10 @@ impl Builder<'_> {
     fn material(&mut self, desc: &MaterialDesc, warnings: &mut Warnings) -> Material {
         warn_of_effects_to_come(desc, warnings);
         let mut inputs = Vec::new();
-        let strength = desc.emission_strength;
-        let emission = desc::ColorInput { factor: desc.emission.factor.map(|c| c * strength), ..desc.emission };
+        let mut mended = Mended::default();
+        let emission =
+            desc::ColorInput { factor: emission(desc, &mut mended).to_array().map(f64::from), ..desc.emission };
+        mended.tell_at(&desc.place, warnings);
         let volume = desc.volume.filter(|v| v.thickness.factor > 0.0);
         let opaque = effects::is_opaque(self.desc, desc);
         Material {
@@ -184,6 +187,19 @@ impl Builder<'_> {
             inputs,
         }
     }
+}
+
+/// True where bad numbers are all that a material was to emit.
+pub fn emission_is_lost(desc: &MaterialDesc) -> bool {
+    effects::emits(desc) && emission(desc, &mut Mended::default()).is_black()
+}
+
+/// Emitted radiance, or the factor of its texture.
+fn emission(desc: &MaterialDesc, mended: &mut Mended) -> Rgb {
+    let strength = desc.emission_strength;
+    // Two negative factors make no light.
+    let product = |c: f64| if strength < 0.0 { -(c * strength).abs() } else { c * strength };
+    mended.color("emission", desc.emission.factor.map(product))
 }
 
 /// `σ = −ln(color) / distance`, KHR_materials_volume.

@@ -1,8 +1,12 @@
 //! Bad numbers of a light and what they are taken as, told in one warning.
 
 use crate::desc::LightDesc;
-use crate::error::Warnings;
+use crate::error::{Place, Warnings};
 use crate::math::Rgb;
+
+/// Nothing is brighter, W·sr⁻¹·m⁻² and the like: sums over pixels and samples stay far below the end of
+/// `f32`.
+pub const LARGEST: f32 = 1e30;
 
 /// What was wrong with one light.
 #[derive(Debug, Default)]
@@ -16,7 +20,7 @@ impl Mended {
         self.notes.push(what.into());
     }
 
-    /// One warning for all notes.
+    /// One warning for all notes on `light`.
     pub fn tell(self, light: &LightDesc, left_out: bool, warnings: &mut Warnings) {
         if !self.notes.is_empty() {
             let notes = self.notes.join("; ");
@@ -25,17 +29,26 @@ impl Mended {
         }
     }
 
-    /// `rgb` without what is no light; `None` where nothing is left.
-    pub fn color(&mut self, rgb: [f64; 3]) -> Option<Rgb> {
-        let finite = |v: &f64| (*v as f32).is_finite();
-        if !rgb.iter().all(finite) {
-            self.note("its intensity is not finite: taken as 0");
+    /// One warning for all notes on what stands at `place`, which names it.
+    pub fn tell_at(self, place: &Place, warnings: &mut Warnings) {
+        if !self.notes.is_empty() {
+            warnings.push(place, self.notes.join("; "));
         }
-        if rgb.iter().any(|v| finite(v) && *v < 0.0) {
-            self.note("its intensity is negative: taken as 0");
+    }
+
+    /// `rgb` without what is no light, black where nothing is left; `what` names it.
+    pub fn color(&mut self, what: &str, rgb: [f64; 3]) -> Rgb {
+        let largest = f64::from(LARGEST);
+        for (bad, is, taken) in [
+            (rgb.iter().any(|v| !v.is_finite()), "not finite", "0"),
+            (rgb.iter().any(|v| v.is_finite() && *v < 0.0), "negative", "0"),
+            (rgb.iter().any(|v| v.is_finite() && *v > largest), "too bright", "1e30"),
+        ] {
+            if bad {
+                self.note(format!("its {what} is {is}: taken as {taken}"));
+            }
         }
-        let color = Rgb::from(rgb.map(|v| if finite(&v) { v.max(0.0) } else { 0.0 }));
-        (!color.is_black()).then_some(color)
+        Rgb::from(rgb.map(|v| if v.is_finite() { v.clamp(0.0, largest) } else { 0.0 }))
     }
 
     /// A length in metres above 0; `None` for a light that has no size.
