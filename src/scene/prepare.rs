@@ -86,6 +86,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes());
     let scene = Scene {
         camera,
+        exposure: camera::exposure(&camera_desc),
         size,
         origin,
         passes,

@@ -14,7 +14,7 @@ mod rules;
 mod shape_light;
 mod shaping;
 #[cfg(test)]
-mod testing;
+pub(super) mod testing;
 
 pub(super) use ies::Profiles;
 pub(super) use links::link;
