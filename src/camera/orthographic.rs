@@ -11,6 +11,8 @@ pub struct Orthographic {
     pub half_width: f32,
     /// Half of the height that is seen.
     pub half_height: f32,
+    /// How far the picture's centre is off the axis, right and up (lens shift).
+    pub center: [f32; 2],
     /// Size of the picture in pixels.
     pub size: [f32; 2],
 }
@@ -19,8 +21,8 @@ impl Orthographic {
     /// See [`super::Camera::ray`].
     pub fn ray(&self, x: f32, y: f32) -> CameraRay {
         let view = &self.view;
-        let sx = (2.0 * x / self.size[0] - 1.0) * self.half_width;
-        let sy = (1.0 - 2.0 * y / self.size[1]) * self.half_height;
+        let sx = (2.0 * x / self.size[0] - 1.0) * self.half_width + self.center[0];
+        let sy = (1.0 - 2.0 * y / self.size[1]) * self.half_height + self.center[1];
         let ray = view.clipped(view.origin + view.right * sx + view.up * sy, view.forward);
         CameraRay { ray, width: 2.0 * self.half_height / self.size[1], spread: 0.0 }
     }

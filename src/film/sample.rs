@@ -95,6 +95,30 @@ pub struct PixelSample {
 }
 
 impl PixelSample {
+    /// Multiplies all radiance by `factor`; what is a share, a color or geometry stays.
+    pub fn expose(&mut self, factor: f32) {
+        for split in [&mut self.direct, &mut self.indirect] {
+            for color in [&mut split.diffuse, &mut split.glossy, &mut split.transmission] {
+                *color *= factor;
+            }
+        }
+        let once = [
+            &mut self.combined,
+            &mut self.emission,
+            &mut self.environment,
+            &mut self.unshadowed,
+            &mut self.irradiance_shadowed,
+            &mut self.irradiance_unshadowed,
+        ];
+        let of_group = |group| {
+            let GroupSample { combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed } = group;
+            [combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed]
+        };
+        for color in once.into_iter().chain(self.groups.iter_mut().flat_map(of_group)) {
+            *color *= factor;
+        }
+    }
+
     /// A sample that brings nothing, of `groups` light groups.
     pub fn with_groups(groups: usize) -> Self {
         Self { groups: vec![GroupSample::default(); groups].into(), ..Self::default() }
@@ -122,5 +146,48 @@ impl FirstHit {
 impl Default for FirstHit {
     fn default() -> Self {
         Self::BACKGROUND
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exposure_is_a_factor_of_radiance_alone() {
+        let one = Split { diffuse: Rgb::WHITE, glossy: Rgb::WHITE, transmission: Rgb::WHITE };
+        let white = Rgb::WHITE;
+        let mut sample = PixelSample {
+            combined: white,
+            alpha: 1.0,
+            direct: one,
+            indirect: one,
+            color: one,
+            emission: white,
+            environment: white,
+            ao: white,
+            unshadowed: white,
+            irradiance_shadowed: white,
+            irradiance_unshadowed: white,
+            denoising_albedo: white,
+            denoising_depth: 1.0,
+            ..PixelSample::with_groups(1)
+        };
+        sample.groups[0] = GroupSample {
+            combined: white,
+            lit: white,
+            unshadowed: white,
+            irradiance_shadowed: white,
+            irradiance_unshadowed: white,
+        };
+        let before = sample.clone();
+        sample.expose(4.0);
+        let four = Rgb::splat(4.0);
+        for color in [sample.combined, sample.emission, sample.environment, sample.unshadowed, sample.direct.glossy] {
+            assert_eq!(color, four);
+        }
+        assert_eq!((sample.groups[0].lit, sample.indirect.transmission), (four, four));
+        assert_eq!((sample.color, sample.ao, sample.alpha), (before.color, before.ao, 1.0));
+        assert_eq!((sample.denoising_albedo, sample.denoising_depth), (white, 1.0));
     }
 }

@@ -23,10 +23,13 @@ pub fn sample(scene: &Scene, settings: &Settings, sampler: &Sampler, x: u32, y: 
     let (dx, dy, weight) = settings.filter.sample(sampler.get_2d(Dimension::PIXEL));
     let camera_ray = scene.camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy);
     let cone = RayCone { width: camera_ray.width, spread: camera_ray.spread };
-    let sample = match settings.integrator {
+    let mut sample = match settings.integrator {
         Integrator::Path => path::trace(scene, sampler, camera_ray.ray, cone, settings, settings.max_bounces),
         Integrator::Direct => path::trace(scene, sampler, camera_ray.ray, cone, settings, 0),
         Integrator::Ao => ao::trace(scene, sampler, camera_ray.ray, cone, settings),
     };
+    if scene.exposure != 1.0 && settings.integrator != Integrator::Ao {
+        sample.expose(scene.exposure);
+    }
     (sample, weight)
 }

@@ -32,6 +32,8 @@ use crate::texture::Texture;
 pub struct Scene {
     /// The camera.
     pub camera: Camera,
+    /// Factor of all radiance in the picture.
+    pub exposure: f32,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     /// World position of render space's origin.

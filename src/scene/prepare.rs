@@ -92,6 +92,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     let scene = Scene {
         camera,
+        exposure: camera::exposure(&camera_desc),
         size,
         origin,
         passes,

@@ -11,15 +11,18 @@ use crate::error::Result;
 pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     let mut scene = SceneDesc { place: reading.place.clone(), render: render::read(reading), ..SceneDesc::default() };
     let mut images = Images::default();
+    let mut profiles = light::Profiles::default();
     let placed = walk::walk(reading);
     for prim in &placed {
         if &*prim.kind == "Camera" {
             scene.cameras.extend(camera::read(reading, prim));
         } else if light::is_light(&prim.kind) {
-            scene.lights.extend(light::read(reading, prim, &mut images));
+            scene.lights.extend(light::read(reading, prim, &mut images, &mut profiles));
         }
     }
     let materials = Materials::new(reading, images);
     materials.finish(&mut scene);
+    scene.ies = profiles.list;
+    light::link(reading, &mut scene);
     Ok(scene)
 }

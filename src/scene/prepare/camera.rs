@@ -60,7 +60,8 @@ fn usable(camera: CameraDesc, desc: &SceneDesc, size: [u32; 2], warnings: &mut W
             half_width > 0.0 && half_height > 0.0 && (half_width + half_height).is_finite()
         }
     };
-    if finite && projects && camera.clip_near >= 0.0 && camera.clip_far > camera.clip_near {
+    let shifted = camera.shift.iter().all(|shift| shift.is_finite());
+    if finite && projects && shifted && camera.clip_near >= 0.0 && camera.clip_far > camera.clip_near {
         return camera;
     }
     let what = "camera with a singular transform, an impossible field of view or empty clip range: \
@@ -90,18 +91,82 @@ pub fn prepare(desc: &CameraDesc, size: [u32; 2], origin: DVec3) -> Camera {
     match desc.projection {
         ProjectionDesc::Perspective { fov_y, aspect: framed } => {
             let tan_y = (0.5 * fov_y).tan();
-            let (x, y) = fit(tan_y * framed.unwrap_or(aspect), tan_y, aspect);
-            Camera::Perspective(Perspective { view, tan_half_x: x, tan_half_y: y, size: size_f })
+            let tan_x = tan_y * framed.unwrap_or(aspect);
+            let (x, y) = fit(tan_x, tan_y, aspect);
+            let center = center(desc.shift, [tan_x, tan_y]);
+            Camera::Perspective(Perspective { view, tan_half_x: x, tan_half_y: y, center, size: size_f })
         }
         ProjectionDesc::Orthographic { half_width, half_height } => {
             let (x, y) = fit(half_width, half_height, aspect);
-            Camera::Orthographic(Orthographic { view, half_width: x, half_height: y, size: size_f })
+            let center = center(desc.shift, [half_width, half_height]);
+            Camera::Orthographic(Orthographic { view, half_width: x, half_height: y, center, size: size_f })
         }
     }
+}
+
+/// Where the picture's centre is, given half of the authored frame.
+fn center(shift: [f64; 2], half: [f64; 2]) -> [f32; 2] {
+    [0, 1].map(|i| (2.0 * shift[i] * half[i]) as f32)
+}
+
+/// Factor of the picture's radiance.
+pub fn exposure(desc: &CameraDesc) -> f32 {
+    let exposure = desc.exposure as f32;
+    if exposure.is_finite() && exposure >= 0.0 { exposure } else { 1.0 }
 }
 
 /// The smallest frame of `aspect` around one of `x` × `y`.
 fn fit(x: f64, y: f64, aspect: f64) -> (f32, f32) {
     let (x, y) = if x / y <= aspect { (y * aspect, y) } else { (x, x / aspect) };
     (x as f32, y as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Place;
+    use crate::math::{DAffine3, Vec3};
+
+    fn desc(projection: ProjectionDesc, shift: [f64; 2]) -> CameraDesc {
+        CameraDesc {
+            name: "a".into(),
+            place: Place::default(),
+            transform: DAffine3::IDENTITY,
+            projection,
+            clip_near: 0.0,
+            clip_far: f64::INFINITY,
+            shift,
+            lens: None,
+            shutter: [0.0; 2],
+            exposure: 1.0,
+            motion: Vec::new(),
+        }
+    }
+
+    /// usd-core: an aperture of 20.955 by 15.2908 shifted by 5 is seen from −0.10955 to 0.30955 at 1 from
+    /// the lens of 50 (`GfCamera().frustum.window`).
+    #[test]
+    fn the_shifted_frame_is_that_of_usd() {
+        let fov_y = 2.0 * (0.5 * 15.2908_f64 / 50.0).atan();
+        let projection = ProjectionDesc::Perspective { fov_y, aspect: Some(20.955 / 15.2908) };
+        let at = |size: [u32; 2], x: f32, y: f32| {
+            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), size, DVec3::ZERO).ray(x, y).ray.d;
+            [d.x / -d.z, d.y / -d.z]
+        };
+        let near = |found: [f32; 2], x: f32, y: f32| {
+            assert!((found[0] - x).abs() < 1e-6 && (found[1] - y).abs() < 1e-6, "{found:?}");
+        };
+        near(at([20_955, 15_291], 0.0, 0.0), -0.10955, 0.152_908);
+        near(at([20_955, 15_291], 20_955.0, 15_291.0), 0.30955, -0.152_908);
+        // A wider picture shows more to both sides of the same centre.
+        near(at([200, 100], 100.0, 50.0), 0.1, 0.0);
+        near(at([200, 100], 0.0, 0.0), 0.1 - 0.305_816, 0.152_908);
+    }
+
+    #[test]
+    fn parallel_rays_are_shifted_by_the_frame() {
+        let projection = ProjectionDesc::Orthographic { half_width: 2.0, half_height: 1.0 };
+        let ray = prepare(&desc(projection, [0.25, -0.5]), [400, 200], DVec3::ZERO).ray(200.0, 100.0).ray;
+        assert_eq!((ray.o, ray.d), (Vec3::new(1.0, -1.0, 0.0), Vec3::NEG_Z));
+    }
 }

@@ -1,0 +1,245 @@
+//! Shapes that are lights: MeshLightAPI, LightAPI on any gprim, and the target of a GeometryLight.
+
+use openusd::sdf;
+use openusd::usd::Prim;
+
+use super::super::stage::Reading;
+use super::super::values::Values;
+use super::super::walk::Placed;
+use super::{color, rules};
+use crate::desc::{ColorInput, LightLinks, MaterialDesc, MeshDesc, ScalarInput};
+use crate::error::Place;
+use crate::math::{DAffine3, DVec3};
+
+/// How a light's emission and its material's go together (`light:materialSyncMode`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sync {
+    /// Glow times light.
+    GlowTintsLight,
+    /// The light in place of the glow; the rest of the material stays.
+    Independent,
+    /// The light alone.
+    NoResponse,
+}
+
+/// The light that a shape is.
+#[derive(Clone, Debug, PartialEq)]
+pub(in super::super) struct ShapeLight {
+    /// Emission before `normalize`.
+    emission: [f64; 3],
+    /// True where it is divided by the area.
+    normalize: bool,
+    sync: Sync,
+    /// Where it was authored.
+    place: Place,
+    /// Its rules, but for the links that [`link`](super::link) fills.
+    pub links: LightLinks,
+}
+
+impl ShapeLight {
+    /// The light that the shape at `path` is; `None` for one that is none.
+    pub fn of(reading: &Reading<'_>, prim: &Prim, path: &sdf::Path) -> Option<Self> {
+        let values = Values { reading, prim, path };
+        if !values.has_api("LightAPI") {
+            return None;
+        }
+        if values.has_api("VolumeLightAPI") {
+            values.warn("volumes that are lights are not rendered: it does not shine");
+            return None;
+        }
+        let sync = match values.token("light:materialSyncMode").as_deref() {
+            Some("materialGlowTintsLight") => Sync::GlowTintsLight,
+            Some("independent") => Sync::Independent,
+            None | Some("noMaterialResponse") => Sync::NoResponse,
+            Some(other) => {
+                values.warn(format!("light:materialSyncMode \"{other}\" is not known: taken as noMaterialResponse"));
+                Sync::NoResponse
+            }
+        };
+        Some(Self::new(&values, sync))
+    }
+
+    fn new(values: &Values<'_>, sync: Sync) -> Self {
+        for name in ["inputs:diffuse", "inputs:specular"] {
+            if values.number(name).is_some_and(|factor| factor != 1.0) {
+                values.warn(format!("{name} of a shape that is a light is not rendered: it is taken as 1"));
+            }
+        }
+        if values.has_api("ShapingAPI") {
+            values.warn("ShapingAPI of a shape that is a light is not rendered");
+        }
+        Self {
+            emission: color::emission(values),
+            normalize: values.flag("inputs:normalize").unwrap_or(false),
+            sync,
+            place: values.reading.place_of(values.path),
+            links: rules::links(values),
+        }
+    }
+
+    /// The material that makes a shape with the material `bound` this light. `area` is that of the shape in
+    /// the world in square units of the stage (see [`area`]); it is asked for only where it matters.
+    ///
+    /// All rays see what lights: UsdLux would show the glow of the material alone to the camera.
+    pub fn material(&self, bound: Option<&MaterialDesc>, area: impl FnOnce() -> f64) -> MaterialDesc {
+        let per_area = if self.normalize { 1.0 / area() } else { 1.0 };
+        let radiance = self.emission.map(|e| e * per_area).map(|e| if e.is_finite() { e } else { 0.0 });
+        let light = ColorInput::constant(radiance);
+        let glows = |m: &&MaterialDesc| m.emission_strength != 0.0 && m.emission.factor != [0.0; 3];
+        match (self.sync, bound) {
+            (Sync::GlowTintsLight, Some(bound)) if glows(&bound) => {
+                let glow = bound.emission;
+                let factor = std::array::from_fn(|i| glow.factor[i] * radiance[i]);
+                MaterialDesc { emission: ColorInput { factor, ..glow }, ..bound.clone() }
+            }
+            // What does not glow has no glow to tint the light with.
+            (Sync::GlowTintsLight | Sync::Independent, Some(bound)) => {
+                MaterialDesc { emission: light, emission_strength: 1.0, ..bound.clone() }
+            }
+            (_, None) | (Sync::NoResponse, _) => MaterialDesc {
+                name: "light".into(),
+                place: self.place.clone(),
+                base_color: ColorInput::constant([0.0; 3]),
+                specular: ScalarInput::constant(0.0),
+                roughness: ScalarInput::constant(1.0),
+                emission: light,
+                ..MaterialDesc::default()
+            },
+        }
+    }
+}
+
+/// The shape that the GeometryLight at `placed` makes shine, and how.
+pub(in super::super) fn geometry_light(reading: &Reading<'_>, placed: &Placed) -> Option<(sdf::Path, ShapeLight)> {
+    let values = Values { reading, prim: &placed.prim, path: &placed.path };
+    let Some(target) = values.targets("geometry").into_iter().next() else {
+        values.warn("a GeometryLight without geometry: it is left out");
+        return None;
+    };
+    Some((target, ShapeLight::new(&values, Sync::NoResponse)))
+}
+
+/// Surface of `mesh` where `world` puts it, in square units of the stage.
+pub(in super::super) fn area(reading: &Reading<'_>, mesh: &MeshDesc, world: &DAffine3) -> f64 {
+    let unit = if reading.blender { 1.0 } else { reading.meters };
+    let point = |i: u32| mesh.points.get(i as usize).map_or(DVec3::ZERO, |p| DVec3::from(p.map(f64::from)));
+    let triangle = |&[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|i| world.transform_vector3(point(i)));
+        0.5 * (b - a).cross(c - a).length()
+    };
+    mesh.triangles.iter().map(triangle).sum::<f64>() / (unit * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::Stage;
+    use super::*;
+    use crate::desc::{LinkSet, SceneDesc};
+
+    fn glowing(factor: [f64; 3]) -> MaterialDesc {
+        MaterialDesc { name: "bound".into(), emission: ColorInput::constant(factor), ..MaterialDesc::default() }
+    }
+
+    #[test]
+    fn a_mesh_light_is_its_glow_times_the_light() {
+        let stage = Stage::new(
+            "metersPerUnit = 0.01",
+            r#"def Mesh "Glow" (prepend apiSchemas = ["MeshLightAPI"]) {
+                float inputs:intensity = 3
+                color3f inputs:color = (1, 0.5, 1)
+                bool inputs:normalize = 1
+            }
+            def Mesh "Alone" (prepend apiSchemas = ["MeshLightAPI"]) {
+                uniform token light:materialSyncMode = "noMaterialResponse"
+                float inputs:intensity = 3
+                bool inputs:shadow:enable = 0
+            }
+            def Mesh "Own" (prepend apiSchemas = ["MeshLightAPI"]) {
+                uniform token light:materialSyncMode = "independent"
+                float inputs:intensity = 5
+            }
+            def Sphere "Ball" (prepend apiSchemas = ["LightAPI"]) {}
+            def Mesh "Dark" {}
+            def GeometryLight "Old" { rel geometry = </Dark> float inputs:intensity = 2 }"#,
+        );
+        let light =
+            |path: &str| stage.with(path, |reading, placed| ShapeLight::of(reading, &placed.prim, &placed.path));
+        let glow = light("/Glow").unwrap().material(Some(&glowing([1.0, 1.0, 0.5])), || 6.0);
+        assert_eq!((&*glow.name, glow.emission.factor), ("bound", [0.5, 0.25, 0.25]));
+        // Nothing glows: the light's own colour.
+        let glow = light("/Glow").unwrap().material(Some(&glowing([0.0; 3])), || 6.0);
+        assert_eq!((&*glow.name, glow.emission.factor), ("bound", [0.5, 0.25, 0.5]));
+        let alone = light("/Alone").unwrap();
+        let material = alone.material(Some(&glowing([1.0; 3])), || 0.0);
+        assert_eq!((material.base_color.factor, material.emission.factor), ([0.0; 3], [3.0; 3]));
+        assert!(!alone.links.cast_shadow);
+        let own = light("/Own").unwrap().material(Some(&glowing([0.5; 3])), || 0.0);
+        assert_eq!((&*own.name, own.emission.factor), ("bound", [5.0; 3]));
+        // The fallback of LightAPI itself.
+        let ball = light("/Ball").unwrap().material(Some(&glowing([0.5; 3])), || 0.0);
+        assert_eq!((&*ball.name, ball.emission.factor), ("light", [1.0; 3]));
+        assert_eq!(light("/Dark"), None);
+        let (target, old) = stage.with("/Old", |reading, placed| geometry_light(reading, placed)).unwrap();
+        assert_eq!((target.as_str(), old.material(None, || 0.0).emission.factor), ("/Dark", [2.0; 3]));
+        assert_eq!(stage.said(), "");
+    }
+
+    /// A square of 100 units in a stage of centimetres, scaled by 2 and 3, is one of 60 000 square units.
+    #[test]
+    fn areas_are_in_the_units_of_the_stage() {
+        let stage = Stage::new(
+            "metersPerUnit = 0.01",
+            r#"def Mesh "A" { float3 xformOp:scale = (2, 1, 3) uniform token[] xformOpOrder = ["xformOp:scale"] }"#,
+        );
+        let mesh = MeshDesc {
+            points: vec![[0.0; 3], [100.0, 0.0, 0.0], [100.0, 0.0, 100.0], [0.0, 0.0, 100.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3], [9, 9, 9]],
+            ..MeshDesc::default()
+        };
+        let found = stage.with("/A", |reading, placed| area(reading, &mesh, &placed.world));
+        assert!((found / 60_000.0 - 1.0).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn collections_become_sets_of_instances() {
+        let stage = Stage::new(
+            "",
+            r#"def Xform "World" { def Mesh "A" {} def Mesh "B" {} def Mesh "C" {} }
+            def SphereLight "All" {}
+            def SphereLight "Some" {
+                uniform bool collection:lightLink:includeRoot = 0
+                rel collection:lightLink:includes = [</World/A>]
+                rel collection:shadowLink:excludes = [</World/C>]
+            }"#,
+        );
+        stage.with("/World", |reading, _| {
+            let mut scene = SceneDesc::default();
+            for path in ["/World/A", "/World/B", "/World/C"] {
+                scene.instances.push(crate::desc::InstanceDesc {
+                    name: path.into(),
+                    place: reading.place.at(path),
+                    asset: path.into(),
+                    mesh: 0,
+                    transform: DAffine3::IDENTITY,
+                    motion: Vec::new(),
+                    materials: Vec::new(),
+                    object_index: 0,
+                    visibility: crate::desc::Visibility::ALL,
+                    links: LightLinks::default(),
+                });
+            }
+            let kind = crate::desc::LightKind::Dome { radiance: [1.0; 3], image: None };
+            for path in ["/All", "/Some"] {
+                let light = crate::desc::LightDesc::new(path, reading.place.at(path), DAffine3::IDENTITY, kind);
+                scene.lights.push(light);
+            }
+            super::super::link(reading, &mut scene);
+            let links: Vec<_> =
+                scene.lights.iter().map(|l| (l.links.receivers.clone(), l.links.blockers.clone())).collect();
+            assert_eq!(links[0], (None, None));
+            let some = LinkSet { instances: vec![0], exclude: false };
+            let without = LinkSet { instances: vec![2], exclude: true };
+            assert_eq!(links[1], (Some(some), Some(without)));
+        });
+    }
+}

@@ -1,0 +1,83 @@
+//! Values of one prim at the time that is read.
+
+use openusd::sdf::{self, AssetPath, Value};
+use openusd::tf::Token;
+use openusd::usd::Prim;
+
+use super::stage::Reading;
+
+/// A prim whose attributes are read; what is said of them is said of `path`.
+#[derive(Clone, Copy)]
+pub(super) struct Values<'a> {
+    pub reading: &'a Reading<'a>,
+    pub prim: &'a Prim,
+    pub path: &'a sdf::Path,
+}
+
+impl Values<'_> {
+    /// A float, authored or the schema's fallback; `None` where there is none or no number.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.finite(name, self.reading.value::<f32>(self.prim, name).map(f64::from))
+    }
+
+    /// A double.
+    pub fn double(&self, name: &str) -> Option<f64> {
+        self.finite(name, self.reading.value::<f64>(self.prim, name))
+    }
+
+    fn finite(&self, name: &str, value: Option<f64>) -> Option<f64> {
+        let value = value?;
+        if !value.is_finite() {
+            self.warn(format!("{name} is {value}: taken for not authored"));
+        }
+        value.is_finite().then_some(value)
+    }
+
+    pub fn flag(&self, name: &str) -> Option<bool> {
+        self.reading.value(self.prim, name)
+    }
+
+    pub fn token(&self, name: &str) -> Option<String> {
+        self.reading.value::<Token>(self.prim, name).map(|token| token.to_string())
+    }
+
+    /// Three floats.
+    pub fn color(&self, name: &str) -> Option<[f64; 3]> {
+        let color = self.reading.value::<[f32; 3]>(self.prim, name)?.map(f64::from);
+        if !color.iter().all(|c| c.is_finite()) {
+            self.warn(format!("{name} is {color:?}: taken for not authored"));
+            return None;
+        }
+        Some(color)
+    }
+
+    /// A file; `None` where the path is empty, too.
+    pub fn asset(&self, name: &str) -> Option<AssetPath> {
+        self.reading.value::<AssetPath>(self.prim, name).filter(|asset| !asset.is_empty())
+    }
+
+    /// A number or truth value of any type, for properties that no schema types.
+    pub fn loose(&self, name: &str) -> Option<f64> {
+        match self.reading.value::<Value>(self.prim, name)? {
+            Value::Bool(value) => Some(f64::from(u8::from(value))),
+            Value::Int(value) => Some(f64::from(value)),
+            Value::Float(value) => Some(f64::from(value)),
+            Value::Double(value) => Some(value),
+            _ => None,
+        }
+        .filter(|value| value.is_finite())
+    }
+
+    /// Targets of a relationship; empty where there are none.
+    pub fn targets(&self, name: &str) -> Vec<sdf::Path> {
+        self.prim.relationship(name).forwarded_targets().unwrap_or_default()
+    }
+
+    pub fn has_api(&self, schema: &str) -> bool {
+        self.prim.has_api_schema(schema).unwrap_or(false)
+    }
+
+    pub fn warn(&self, what: impl Into<String>) {
+        self.reading.warn(self.path, what);
+    }
+}
