@@ -51,7 +51,7 @@ impl<'a> Reading<'a> {
         // z up to y up: (x, y, z) is (x, z, −y).
         let turn = if z_up { DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y) } else { DMat3::IDENTITY };
         let to_world = DAffine3::from_mat3(turn * DMat3::from_diagonal(DVec3::splat(meters)));
-        let blender = token(&stage, "doc").is_some_and(|doc| doc.starts_with("Blender"));
+        let blender = token(&stage, "documentation").is_some_and(|doc| doc.starts_with("Blender"));
         let warnings = RefCell::new(Warnings::new());
         Ok(Self { stage, time, place, options, meters, to_world, blender, warnings })
     }
