@@ -16,6 +16,7 @@ mod render;
 mod scene;
 mod shape;
 mod stage;
+mod udim;
 mod values;
 mod walk;
 

@@ -1,12 +1,52 @@
 //! Shading networks to `MaterialDesc`.
+//!
+//! ```text
+//! UsdShade prims ─┐                                                       ┌─ factor × texture
+//! .mtlx document ─┴─► network ─► model: inputs as expressions ─► surface ─┴─ computed image ─► MaterialDesc
+//! ```
 
+mod bake;
+mod closure;
+mod color;
+mod evaluate;
+mod expr;
+mod function;
+mod models;
+mod mtlx;
+mod network;
+mod pattern;
+mod shade;
+mod surface;
+mod texture;
+
+#[cfg(test)]
+mod assets;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use openusd::sdf;
+use openusd_schemas::shade as schema;
 
-use super::images::Images;
+use self::network::{Network, Source, Value};
+use self::surface::{Finished, VertexColors};
+use super::images::{File, Images};
 use super::stage::Reading;
-use crate::desc::SceneDesc;
+use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc};
+
+/// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
+const CONTEXTS: [&str; 2] = ["mtlx", ""];
+
+/// The color of a shape that nothing is bound to and that has no displayColor (UsdImaging).
+pub(super) const FALLBACK_COLOR: [f32; 3] = [0.5; 3];
+
+/// A network and what it was found as.
+struct Found {
+    network: Network,
+    surface: Source,
+}
 
 /// Materials read so far.
 pub(super) struct Materials<'a> {
@@ -15,25 +55,200 @@ pub(super) struct Materials<'a> {
     /// Names of the primvars that textures are looked up by; the index is that of the UV set. `st` comes
     /// first.
     pub uv_sets: Vec<Arc<str>>,
+    textures: Vec<TextureDesc>,
+    finished: Vec<Finished>,
+    known: HashMap<sdf::Path, Option<u32>>,
+    unbound: Option<u32>,
+    /// Networks that were gathered ahead, in the order in which they are tried.
+    gathered: HashMap<sdf::Path, Vec<Found>>,
+    udims: HashMap<(String, bool), Result<(u32, [u32; 2]), String>>,
 }
 
 impl<'a> Materials<'a> {
     pub fn new(reading: &'a Reading<'a>, images: Images) -> Self {
-        Self { reading, images, uv_sets: vec!["st".into()] }
+        Self {
+            reading,
+            images,
+            uv_sets: vec!["st".into()],
+            textures: Vec::new(),
+            finished: Vec::new(),
+            known: HashMap::new(),
+            unbound: None,
+            gathered: HashMap::new(),
+            udims: HashMap::new(),
+        }
     }
 
-    /// Index of the material at `path`; `None`, with a warning, where there is none that can be read.
-    pub fn at(&mut self, _path: &sdf::Path) -> Option<u32> {
-        None
+    /// Decodes the images of the materials at `paths` on all threads, which `at` would do one by one.
+    pub fn preload<'p>(&mut self, paths: impl IntoIterator<Item = &'p sdf::Path>) {
+        let mut files = Vec::new();
+        for path in paths {
+            if self.known.contains_key(path) || self.gathered.contains_key(path) {
+                continue;
+            }
+            let found = self.gather(path);
+            // The first one is nearly always the one that is read.
+            let inputs = found.iter().take(1).flat_map(|found| &found.network.nodes).flat_map(|n| n.inputs.values());
+            for input in inputs {
+                match &input.value {
+                    Some(Value::File(File::One(file))) => files.push(file.clone()),
+                    Some(Value::File(File::Tiles(tiles))) => files.extend(tiles.iter().map(|tile| tile.1.clone())),
+                    _ => {}
+                }
+            }
+            self.gathered.insert(path.clone(), found);
+        }
+        self.images.preload(files);
     }
 
-    /// Index of the material of shapes that none is bound to: white times their displayColor.
+    /// Index of the material at `path`; `None`, with a warning, where there is none that can be read:
+    /// what is bound to it looks as if nothing were.
+    pub fn at(&mut self, path: &sdf::Path) -> Option<u32> {
+        if let Some(&known) = self.known.get(path) {
+            return known;
+        }
+        let index = self.read(path).map(|finished| self.add(finished));
+        self.known.insert(path.clone(), index);
+        index
+    }
+
+    /// Index of the material of shapes that none is bound to: white times their displayColor, diffuse.
+    /// Shapes without displayColor are [`FALLBACK_COLOR`].
     pub fn unbound(&mut self) -> u32 {
-        0
+        if let Some(index) = self.unbound {
+            return index;
+        }
+        let material = MaterialDesc {
+            name: "displayColor".into(),
+            place: self.reading.place.clone(),
+            base_color: ColorInput::constant([1.0; 3]),
+            roughness: ScalarInput::constant(1.0),
+            specular: ScalarInput::constant(0.0),
+            // Whether anything is seen through is up to the shapes' displayOpacity.
+            alpha_mode: crate::desc::AlphaMode::Blend,
+            ..MaterialDesc::default()
+        };
+        let colors = VertexColors { color: Some("displayColor".into()), opacity: Some("displayOpacity".into()) };
+        let index = self.add(Finished { material, colors });
+        self.unbound = Some(index);
+        index
+    }
+
+    /// The material at an index.
+    pub fn get(&self, index: u32) -> Option<&MaterialDesc> {
+        self.finished.get(index as usize).map(|finished| &finished.material)
+    }
+
+    /// Primvars that `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material
+    /// asks for none must have no colors: they would multiply its base color.
+    pub fn vertex_colors(&self, index: u32) -> VertexColors {
+        self.finished.get(index as usize).map(|finished| finished.colors.clone()).unwrap_or_default()
+    }
+
+    /// The UV set that the tangents of material `index` go by; `None` where it needs none.
+    pub fn tangent_uv_set(&self, index: u32) -> Option<u32> {
+        let material = self.get(index)?;
+        let coat = material.coat.and_then(|coat| coat.normal);
+        let normal = material.normal.or(coat).map(|normal| normal.texture.uv_set);
+        normal.or(material.anisotropy.filter(|a| a.strength > 0.0).map(|_| 0))
+    }
+
+    /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.
+    pub fn used_uv_sets(&self, index: u32) -> Vec<u32> {
+        let mut sets: Vec<u32> = self.get(index).into_iter().flat_map(|m| m.textures()).map(|t| t.uv_set).collect();
+        sets.extend(self.tangent_uv_set(index));
+        sets.sort_unstable();
+        sets.dedup();
+        sets
     }
 
     /// Moves everything into `scene`.
     pub fn finish(self, scene: &mut SceneDesc) {
         scene.images = self.images.images;
+        scene.textures = self.textures;
+        scene.materials = self.finished.into_iter().map(|finished| finished.material).collect();
+    }
+
+    fn add(&mut self, finished: Finished) -> u32 {
+        self.finished.push(finished);
+        self.finished.len() as u32 - 1
+    }
+
+    /// Index of the UV set of the primvar `name`.
+    fn uv_set(&mut self, name: Arc<str>) -> u32 {
+        let known = self.uv_sets.iter().position(|known| *known == name);
+        known.unwrap_or_else(|| {
+            self.uv_sets.push(name);
+            self.uv_sets.len() - 1
+        }) as u32
+    }
+
+    fn tables(&self) -> bake::Tables<'_> {
+        bake::Tables { images: &self.images.images, textures: &self.textures }
+    }
+
+    fn read(&mut self, path: &sdf::Path) -> Option<Finished> {
+        let found = self.gathered.remove(path).unwrap_or_else(|| self.gather(path));
+        if found.is_empty() {
+            self.tell_why_not(path);
+            return None;
+        }
+        for found in &found {
+            let mut evaluator = evaluate::Evaluator::new(self, &found.network);
+            if let Some(surface) = models::read(&mut evaluator, &found.surface) {
+                let mut finished = surface::finish(&mut evaluator, found.surface.node, surface);
+                finished.material.name = path.name().unwrap_or_default().into();
+                finished.material.place = self.reading.place_of(path);
+                return Some(finished);
+            }
+        }
+        let models: Vec<&str> =
+            found.iter().map(|found| found.network.nodes[found.surface.node].category.as_str()).collect();
+        let models = models.join("\", \"");
+        self.reading.warn(path, format!("shading model \"{models}\" isn't read; displayColor is shown"));
+        None
+    }
+
+    /// The networks of the material at `path`, best first.
+    fn gather(&self, path: &sdf::Path) -> Vec<Found> {
+        let reading = self.reading;
+        let material = schema::Material::get(&reading.stage, path.clone()).ok().flatten();
+        let mut found = Vec::new();
+        for context in CONTEXTS {
+            let output = material.as_ref().and_then(|material| match context {
+                "" => Some(material.surface_output()),
+                _ => material.surface_output_for(context).ok(),
+            });
+            let network = output.and_then(|output| shade::network(reading, output.attribute()));
+            found.extend(network.map(|(network, surface)| Found { network, surface }));
+        }
+        if found.is_empty()
+            && let Some((file, name)) = mtlx::find(reading, path)
+        {
+            match mtlx::network(&file, &name) {
+                Ok((network, surface)) => found.push(Found { network, surface }),
+                Err(what) => reading.warn(path, what),
+            }
+        }
+        found
+    }
+
+    fn tell_why_not(&self, path: &sdf::Path) {
+        let reading = self.reading;
+        let Some(material) = schema::Material::get(&reading.stage, path.clone()).ok().flatten() else {
+            reading.warn(path, "there is no material here; displayColor is shown");
+            return;
+        };
+        let outputs = material.surface_outputs().unwrap_or_default();
+        let contexts: Vec<String> = outputs
+            .iter()
+            .filter(|output| output.attribute().has_authored_connections().unwrap_or_default())
+            .filter_map(|output| output.base_name().strip_suffix(":surface").map(str::to_string))
+            .collect();
+        let what = match contexts.is_empty() {
+            true => "has no surface".to_string(),
+            false => format!("has a surface for {} alone, which isn't read", contexts.join(", ")),
+        };
+        reading.warn(path, format!("{what}; displayColor is shown"));
     }
 }

@@ -1,0 +1,257 @@
+//! The shading models: UsdPreviewSurface, and those of MaterialX.
+//!
+//! Defaults and meaning: <https://openusd.org/release/spec_usdpreviewsurface.html>, and the definitions in
+//! `libraries/bxdf` of MaterialX 1.39.
+
+use super::closure;
+use super::evaluate::Evaluator;
+use super::expr::Id;
+use super::function::Function;
+use super::network::Source;
+use super::surface::{Alpha, Coat, Film, Surface};
+
+/// Reflectance at normal incidence of index 1.5.
+const F0_OF_1_5: f64 = 0.04;
+
+/// The surface of a node, `None` for a model that isn't known.
+pub(super) fn read(e: &mut Evaluator<'_, '_>, source: &Source) -> Option<Surface> {
+    let node = source.node;
+    match e.node(node).category.as_str() {
+        "UsdPreviewSurface" => Some(preview(e, node)),
+        "standard_surface" => Some(standard_surface(e, node)),
+        "open_pbr_surface" => Some(open_pbr(e, node)),
+        "gltf_pbr" => Some(gltf(e, node)),
+        "surface" => Some(closure::surface(e, node)),
+        "surface_unlit" => Some(closure::unlit(e, node)),
+        _ => None,
+    }
+}
+
+/// UsdPreviewSurface. Opacity is alpha in both opacity modes, as Cycles' Hydra delegate has it; Storm keeps
+/// the highlights of "transparent" surfaces.
+fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
+    let mut s = Surface::new(e);
+    s.base_color = e.input(node, "diffuseColor", [0.18, 0.18, 0.18, 1.0]);
+    s.roughness = e.scalar(node, "roughness", 0.5);
+    s.emission = e.input(node, "emissiveColor", [0.0; 4]);
+    s.ior = e.scalar(node, "ior", 1.5);
+    let coat_roughness = e.scalar(node, "clearcoatRoughness", 0.01);
+    let weight = e.scalar(node, "clearcoat", 0.0);
+    s.coat = Some(Coat { weight, roughness: coat_roughness, ior: s.ior, normal: None });
+    if e.uniform(node, "useSpecularWorkflow", 0.0) == 0.0 {
+        s.metallic = e.scalar(node, "metallic", 0.0);
+    } else {
+        // F0 is the color itself and F90 white, whatever the index.
+        let color = e.input(node, "specularColor", [0.0, 0.0, 0.0, 1.0]);
+        s.specular_color = e.exprs.scale(color, 1.0 / F0_OF_1_5);
+        s.ior = e.exprs.number(1.5);
+    }
+    s.opacity = e.scalar(node, "opacity", 1.0);
+    let threshold = e.uniform(node, "opacityThreshold", 0.0);
+    if threshold > 0.0 {
+        s.alpha = Alpha::Mask(threshold);
+    }
+    s.normal = e.optional(node, "normal");
+    s.occlusion = e.optional(node, "occlusion");
+    let displacement = e.scalar(node, "displacement", 0.0);
+    if !e.exprs.is(displacement, 0.0) {
+        e.warn(node, "its displacement is left out: not computed yet");
+    }
+    s
+}
+
+fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
+    let mut s = Surface::new(e);
+    // Version 1.0.0 of the node had 0.8 and white for 1 and 0.8: the same product.
+    let base = weighted(e, node, ["base", "base_color"], [1.0, 0.8]);
+    let subsurface = e.scalar(node, "subsurface", 0.0);
+    let beneath = e.input(node, "subsurface_color", [1.0; 4]);
+    s.base_color = subsurface_as_diffuse(e, node, base, beneath, subsurface);
+    s.metallic = e.scalar(node, "metalness", 0.0);
+    s.specular = e.scalar(node, "specular", 1.0);
+    s.specular_color = e.input(node, "specular_color", [1.0; 4]);
+    s.roughness = e.scalar(node, "specular_roughness", 0.2);
+    s.ior = e.scalar(node, "specular_IOR", 1.5);
+    let rotation = e.uniform(node, "specular_rotation", 0.0) * std::f64::consts::TAU;
+    s.anisotropy = Some((e.scalar(node, "specular_anisotropy", 0.0), rotation));
+    s.transmission = e.scalar(node, "transmission", 0.0);
+    s.thin_walled = e.uniform(node, "thin_walled", 0.0) != 0.0;
+    transmit(e, node, &mut s);
+    let abbe = e.uniform(node, "transmission_dispersion", 0.0);
+    s.dispersion = if abbe > 0.0 { 20.0 / abbe } else { 0.0 };
+    left_out(e, node, "transmission_extra_roughness", "extra roughness of transmission");
+    s.coat = Some(Coat {
+        weight: e.scalar(node, "coat", 0.0),
+        roughness: e.scalar(node, "coat_roughness", 0.1),
+        ior: e.scalar(node, "coat_IOR", 1.5),
+        normal: e.optional(node, "coat_normal"),
+    });
+    tint_by_coat(e, node, &mut s);
+    let sheen = weighted(e, node, ["sheen", "sheen_color"], [0.0, 1.0]);
+    s.sheen = Some((sheen, e.scalar(node, "sheen_roughness", 0.3)));
+    s.film = Some(Film {
+        weight: e.exprs.number(1.0),
+        ior: e.scalar(node, "thin_film_IOR", 1.5),
+        thickness: e.scalar(node, "thin_film_thickness", 0.0),
+    });
+    s.emission = weighted(e, node, ["emission", "emission_color"], [0.0, 1.0]);
+    let opacity = e.input(node, "opacity", [1.0; 4]);
+    s.opacity = as_number(e, opacity);
+    s.normal = e.optional(node, "normal");
+    s
+}
+
+fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
+    let mut s = Surface::new(e);
+    let base = weighted(e, node, ["base_weight", "base_color"], [1.0, 0.8]);
+    let subsurface = e.scalar(node, "subsurface_weight", 0.0);
+    let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
+    s.base_color = subsurface_as_diffuse(e, node, base, beneath, subsurface);
+    s.metallic = e.scalar(node, "base_metalness", 0.0);
+    s.specular = e.scalar(node, "specular_weight", 1.0);
+    s.specular_color = e.input(node, "specular_color", [1.0; 4]);
+    s.roughness = e.scalar(node, "specular_roughness", 0.3);
+    s.ior = e.scalar(node, "specular_ior", 1.5);
+    let anisotropy = e.scalar(node, "specular_roughness_anisotropy", 0.0);
+    if !e.exprs.is(anisotropy, 0.0) {
+        s.anisotropy = Some((anisotropy, closure::tangent(e, node, "geometry_tangent")));
+    }
+    s.transmission = e.scalar(node, "transmission_weight", 0.0);
+    s.thin_walled = e.uniform(node, "geometry_thin_walled", 0.0) != 0.0;
+    transmit(e, node, &mut s);
+    let abbe = e.uniform(node, "transmission_dispersion_abbe_number", 20.0);
+    let scale = e.uniform(node, "transmission_dispersion_scale", 0.0);
+    s.dispersion = if abbe > 0.0 { 20.0 / abbe * scale } else { 0.0 };
+    s.coat = Some(Coat {
+        weight: e.scalar(node, "coat_weight", 0.0),
+        roughness: e.scalar(node, "coat_roughness", 0.0),
+        ior: e.scalar(node, "coat_ior", 1.6),
+        normal: e.optional(node, "geometry_coat_normal"),
+    });
+    tint_by_coat(e, node, &mut s);
+    let fuzz = weighted(e, node, ["fuzz_weight", "fuzz_color"], [0.0, 1.0]);
+    s.sheen = Some((fuzz, e.scalar(node, "fuzz_roughness", 0.5)));
+    let micrometres = e.scalar(node, "thin_film_thickness", 0.5);
+    s.film = Some(Film {
+        weight: e.scalar(node, "thin_film_weight", 0.0),
+        ior: e.scalar(node, "thin_film_ior", 1.4),
+        thickness: e.exprs.scale(micrometres, 1000.0),
+    });
+    // The node's definition emits `luminance × color` as radiance; Blender writes its strength there.
+    s.emission = weighted(e, node, ["emission_luminance", "emission_color"], [0.0, 1.0]);
+    s.opacity = e.scalar(node, "geometry_opacity", 1.0);
+    s.normal = e.optional(node, "geometry_normal");
+    s
+}
+
+fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
+    let mut s = Surface::new(e);
+    s.base_color = e.input(node, "base_color", [1.0; 4]);
+    s.metallic = e.scalar(node, "metallic", 1.0);
+    s.roughness = e.scalar(node, "roughness", 1.0);
+    s.normal = e.optional(node, "normal");
+    s.occlusion = e.optional(node, "occlusion");
+    s.transmission = e.scalar(node, "transmission", 0.0);
+    s.specular = e.scalar(node, "specular", 1.0);
+    s.specular_color = e.input(node, "specular_color", [1.0; 4]);
+    s.ior = e.scalar(node, "ior", 1.5);
+    s.opacity = e.scalar(node, "alpha", 1.0);
+    s.alpha = match e.uniform(node, "alpha_mode", 0.0) {
+        1.0 => Alpha::Mask(e.uniform(node, "alpha_cutoff", 0.5)),
+        2.0 => Alpha::Blend,
+        _ => Alpha::Ignored,
+    };
+    s.film = Some(Film {
+        weight: e.scalar(node, "iridescence", 0.0),
+        ior: e.scalar(node, "iridescence_ior", 1.3),
+        thickness: e.scalar(node, "iridescence_thickness", 100.0),
+    });
+    let sheen = e.input(node, "sheen_color", [0.0; 4]);
+    s.sheen = Some((sheen, e.scalar(node, "sheen_roughness", 0.0)));
+    s.coat = Some(Coat {
+        weight: e.scalar(node, "clearcoat", 0.0),
+        roughness: e.scalar(node, "clearcoat_roughness", 0.0),
+        ior: e.exprs.number(1.5),
+        normal: e.optional(node, "clearcoat_normal"),
+    });
+    s.emission = weighted(e, node, ["emissive_strength", "emissive"], [1.0, 0.0]);
+    let thickness = e.scalar(node, "thickness", 0.0);
+    s.thin_walled = e.exprs.is(thickness, 0.0);
+    let distance = e.uniform(node, "attenuation_distance", f64::INFINITY);
+    let color = e.input(node, "attenuation_color", [1.0; 4]);
+    s.attenuation = (distance > 0.0).then_some((distance * e.materials.reading.meters, color));
+    let strength = e.scalar(node, "anisotropy_strength", 0.0);
+    s.anisotropy = Some((strength, e.uniform(node, "anisotropy_rotation", 0.0)));
+    s.dispersion = e.uniform(node, "dispersion", 0.0);
+    s
+}
+
+/// A weight times a color.
+fn weighted(e: &mut Evaluator<'_, '_>, node: usize, names: [&str; 2], defaults: [f64; 2]) -> Id {
+    let weight = e.scalar(node, names[0], defaults[0]);
+    let color = e.input(node, names[1], [defaults[1]; 4]);
+    e.exprs.multiply(color, weight)
+}
+
+/// Transmission's color: the tint of the base where it has no depth, that of the inside where it has one.
+/// MaterialX tints each passage by it; a base color is what is left after two (Cycles), and that is what
+/// Blender exports.
+fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
+    if e.exprs.is(s.transmission, 0.0) {
+        return;
+    }
+    let color = e.input(node, "transmission_color", [1.0; 4]);
+    let depth = e.uniform(node, "transmission_depth", 0.0);
+    let scatter = e.input(node, "transmission_scatter", [0.0; 4]);
+    if !e.exprs.is(scatter, 0.0) {
+        e.warn(node, "its transmission_scatter is left out: light isn't scattered inside yet");
+    }
+    let tint = if depth > 0.0 { e.exprs.number(1.0) } else { color };
+    s.base_color = e.exprs.mix(s.base_color, tint, s.transmission);
+    if depth > 0.0 {
+        s.attenuation = Some((depth * e.materials.reading.meters, color));
+    }
+}
+
+fn subsurface_as_diffuse(e: &mut Evaluator<'_, '_>, node: usize, base: Id, beneath: Id, weight: Id) -> Id {
+    if !e.exprs.is(weight, 0.0) {
+        e.warn(node, "its subsurface scattering is rendered as diffuse reflection of the same color");
+    }
+    e.exprs.mix(base, beneath, weight)
+}
+
+/// A coat's color, which the description lacks, tints what lies beneath.
+fn tint_by_coat(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
+    let color = e.input(node, "coat_color", [1.0; 4]);
+    let Some(coat) = s.coat.filter(|coat| !e.exprs.is(coat.weight, 0.0) && !e.exprs.is(color, 1.0)) else { return };
+    e.warn(node, "its coat_color tints the base color instead");
+    let one = e.exprs.number(1.0);
+    let tint = e.exprs.mix(one, color, coat.weight);
+    s.base_color = e.exprs.multiply(s.base_color, tint);
+}
+
+fn left_out(e: &mut Evaluator<'_, '_>, node: usize, input: &str, what: &str) {
+    let value = e.scalar(node, input, 0.0);
+    if !e.exprs.is(value, 0.0) {
+        e.warn(node, format!("its {what} is left out: not computed yet"));
+    }
+}
+
+/// A color read as a number: itself where it is grey, else its luminance (Rec.709).
+fn as_number(e: &mut Evaluator<'_, '_>, color: Id) -> Id {
+    use super::expr::Op;
+    let grey = match e.exprs.op(color) {
+        Op::Constant([r, g, b, _]) => r == g && g == b,
+        Op::Lookup(l) => {
+            let same = |v: [f64; 4]| v[0] == v[1] && v[1] == v[2];
+            let one_channel = l.channels <= 2 || (l.swizzle[0] == l.swizzle[1] && l.swizzle[1] == l.swizzle[2]);
+            one_channel && same(l.factor) && same(l.bias)
+        }
+        _ => false,
+    };
+    if grey {
+        return e.exprs.extract(color, 0);
+    }
+    let weights = e.exprs.constant([0.2126, 0.7152, 0.0722, 0.0]);
+    e.exprs.apply(Function::Dot(3), &[color, weights])
+}

@@ -1,0 +1,120 @@
+//! A shading network as plain data: nodes with inputs that hold values or are connected. USD prims and
+//! MaterialX documents both become one.
+
+use std::collections::BTreeMap;
+
+use super::super::images::File;
+use crate::error::Place;
+
+/// The nodes of one material.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Network {
+    pub nodes: Vec<Node>,
+}
+
+/// A node.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// What it does, as "image", "mix", "UsdUVTexture".
+    pub category: String,
+    /// The type in its identifier, as "color3"; empty where there is none.
+    pub kind: String,
+    pub place: Place,
+    pub inputs: BTreeMap<String, Input>,
+}
+
+/// An input of a node.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Input {
+    pub value: Option<Value>,
+    pub source: Option<Source>,
+    /// Color space of the value or of the file.
+    pub color_space: Option<String>,
+}
+
+/// What an input is connected to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Source {
+    pub node: usize,
+    pub output: String,
+}
+
+/// A value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// One to four numbers; booleans are 0 or 1.
+    Numbers([f64; 4], u8),
+    Text(String),
+    File(File),
+}
+
+/// Categories whose names other ones begin with, or that hold an underscore, longest first.
+const WITH_UNDERSCORE: &[&str] = &[
+    "generalized_schlick_bsdf",
+    "oren_nayar_diffuse_bsdf",
+    "burley_diffuse_bsdf",
+    "open_pbr_anisotropy",
+    "open_pbr_surface",
+    "roughness_anisotropy",
+    "standard_surface",
+    "translucent_bsdf",
+    "dielectric_bsdf",
+    "subsurface_bsdf",
+    "conductor_bsdf",
+    "surface_unlit",
+    "artistic_ior",
+    "uniform_edf",
+    "sheen_bsdf",
+    "gltf_pbr",
+];
+
+/// Category and type of a node's identifier: `ND_mix_color3` is "mix" and "color3",
+/// `UsdPrimvarReader_float2` "UsdPrimvarReader" and "float2".
+pub(super) fn category(id: &str) -> (&str, &str) {
+    let name = id.strip_prefix("ND_").unwrap_or(id);
+    for known in WITH_UNDERSCORE {
+        if let Some(rest) = name.strip_prefix(known)
+            && (rest.is_empty() || rest.starts_with('_'))
+        {
+            return (known, rest.trim_start_matches('_'));
+        }
+    }
+    name.split_once('_').unwrap_or((name, ""))
+}
+
+impl Node {
+    /// The text of an input.
+    pub fn text(&self, input: &str) -> Option<&str> {
+        match &self.inputs.get(input)?.value {
+            Some(Value::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// True where an input has a value or a connection.
+    pub fn has(&self, input: &str) -> bool {
+        self.inputs.get(input).is_some_and(|input| input.value.is_some() || input.source.is_some())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::category;
+
+    #[test]
+    fn identifiers_are_category_and_type() {
+        for (id, expected) in [
+            ("ND_image_color3", ("image", "color3")),
+            ("ND_standard_surface_surfaceshader", ("standard_surface", "surfaceshader")),
+            ("ND_UsdPreviewSurface_surfaceshader", ("UsdPreviewSurface", "surfaceshader")),
+            ("ND_convert_vector3_color3", ("convert", "vector3_color3")),
+            ("UsdPrimvarReader_float2", ("UsdPrimvarReader", "float2")),
+            ("UsdUVTexture", ("UsdUVTexture", "")),
+            ("ND_surface", ("surface", "")),
+            ("ND_oren_nayar_diffuse_bsdf", ("oren_nayar_diffuse_bsdf", "")),
+            ("ND_mix_bsdf", ("mix", "bsdf")),
+        ] {
+            assert_eq!(category(id), expected, "{id}");
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! MaterialX's standard nodes that compute with values, by the defaults of `stdlib_defs.mtlx` 1.39.
+
+use super::evaluate::Evaluator;
+use super::expr::{Id, Op};
+use super::function::Function as F;
+
+/// Functions of which each input has one default.
+const SIMPLE: &[(&str, F, &[(&str, f64)])] = &[
+    ("add", F::Add, &[("in1", 0.0), ("in2", 0.0)]),
+    ("multiply", F::Multiply, &[("in1", 0.0), ("in2", 1.0)]),
+    ("divide", F::Divide, &[("in1", 0.0), ("in2", 1.0)]),
+    ("modulo", F::Modulo, &[("in1", 0.0), ("in2", 1.0)]),
+    ("power", F::Power, &[("in1", 0.0), ("in2", 1.0)]),
+    ("safepower", F::SafePower, &[("in1", 0.0), ("in2", 1.0)]),
+    ("min", F::Minimum, &[("in1", 0.0), ("in2", 0.0)]),
+    ("max", F::Maximum, &[("in1", 0.0), ("in2", 0.0)]),
+    ("absval", F::Absolute, &[("in", 0.0)]),
+    ("sign", F::Sign, &[("in", 0.0)]),
+    ("floor", F::Floor, &[("in", 0.0)]),
+    ("ceil", F::Ceil, &[("in", 0.0)]),
+    ("round", F::Round, &[("in", 0.0)]),
+    ("fract", F::Fract, &[("in", 0.0)]),
+    ("sin", F::Sin, &[("in", 0.0)]),
+    ("cos", F::Cos, &[("in", 0.0)]),
+    ("tan", F::Tan, &[("in", 0.0)]),
+    ("asin", F::Asin, &[("in", 0.0)]),
+    ("acos", F::Acos, &[("in", 0.0)]),
+    ("atan2", F::Atan2, &[("iny", 0.0), ("inx", 1.0)]),
+    ("sqrt", F::Sqrt, &[("in", 0.0)]),
+    ("ln", F::Ln, &[("in", 1.0)]),
+    ("exp", F::Exp, &[("in", 0.0)]),
+    ("clamp", F::Clamp, &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
+    ("smoothstep", F::Smoothstep, &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
+    ("mix", F::Mix, &[("bg", 0.0), ("fg", 0.0), ("mix", 0.0)]),
+    ("ifgreater", F::IfGreater, &[("value1", 1.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
+    ("ifgreatereq", F::IfGreaterOrEqual, &[("value1", 1.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
+    ("ifequal", F::IfEqual, &[("value1", 0.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
+    ("crossproduct", F::Cross, &[("in1", 0.0), ("in2", 0.0)]),
+    ("hsvtorgb", F::HsvToRgb, &[("in", 0.0)]),
+    ("rgbtohsv", F::RgbToHsv, &[("in", 0.0)]),
+];
+
+/// The value of a node; `None`, with a warning, for one that is not known.
+pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
+    let data = e.node(node);
+    let category = data.category.as_str();
+    if let Some((_, function, inputs)) = SIMPLE.iter().find(|(name, _, _)| *name == category) {
+        return Some(e.function(node, *function, inputs));
+    }
+    let count = count(&data.kind);
+    Some(match category {
+        "constant" => e.input(node, "value", [0.0; 4]),
+        "dot" => e.input(node, "in", [0.0; 4]),
+        "subtract" => {
+            let (a, b) = (e.input(node, "in1", [0.0; 4]), e.input(node, "in2", [0.0; 4]));
+            e.exprs.subtract(a, b)
+        }
+        "invert" => {
+            let (a, b) = (e.input(node, "amount", [1.0; 4]), e.input(node, "in", [0.0; 4]));
+            e.exprs.subtract(a, b)
+        }
+        "dotproduct" => e.function(node, F::Dot(count), &[("in1", 0.0), ("in2", 0.0)]),
+        "magnitude" => e.function(node, F::Length(count), &[("in", 0.0)]),
+        "normalize" => e.function(node, F::Normalize(count), &[("in", 0.0)]),
+        "luminance" => {
+            let color = e.input(node, "in", [0.0; 4]);
+            luminance(e, node, color)
+        }
+        "saturate" => {
+            let color = e.input(node, "in", [0.0; 4]);
+            let (grey, amount) = (luminance(e, node, color), e.scalar(node, "amount", 1.0));
+            e.exprs.mix(grey, color, amount)
+        }
+        "contrast" => {
+            let (a, pivot) = (e.input(node, "in", [0.0; 4]), e.input(node, "pivot", [0.5; 4]));
+            let amount = e.input(node, "amount", [1.0; 4]);
+            let above = e.exprs.subtract(a, pivot);
+            let above = e.exprs.multiply(above, amount);
+            e.exprs.add(above, pivot)
+        }
+        "remap" => remap(e, node),
+        "range" => range(e, node),
+        "hsvadjust" => {
+            let color = e.function(node, F::RgbToHsv, &[("in", 0.0)]);
+            let amount = e.input(node, "amount", [0.0, 1.0, 1.0, 1.0]);
+            // Hue is added, saturation and value multiplied.
+            let (hue, rest) = (e.exprs.constant([1.0, 0.0, 0.0, 0.0]), e.exprs.constant([0.0, 1.0, 1.0, 1.0]));
+            let (added, multiplied) = (e.exprs.multiply(amount, hue), e.exprs.multiply(amount, rest));
+            let multiplied = e.exprs.add(multiplied, hue);
+            let color = e.exprs.multiply(color, multiplied);
+            let color = e.exprs.add(color, added);
+            e.exprs.apply(F::HsvToRgb, &[color])
+        }
+        "plus" | "minus" | "difference" | "screen" | "burn" | "dodge" | "overlay" => blend(e, node, category)?,
+        "convert" => convert(e, node),
+        "extract" => {
+            let (a, index) = (e.input(node, "in", [0.0; 4]), e.uniform(node, "index", 0.0));
+            e.exprs.extract(a, index.clamp(0.0, 3.0) as u8)
+        }
+        "swizzle" => {
+            let channels = data.text("channels").unwrap_or("x").to_string();
+            let a = e.input(node, "in", [0.0; 4]);
+            swizzle(e, a, &channels)
+        }
+        "combine2" | "combine3" | "combine4" => combine(e, node),
+        "switch" => {
+            let which = e.uniform(node, "which", 0.0).clamp(0.0, 9.0) as u8;
+            e.input(node, &format!("in{}", which + 1), [0.0; 4])
+        }
+        "rotate2d" => {
+            let a = e.input(node, "in", [0.0; 4]);
+            let amount = e.uniform(node, "amount", 0.0);
+            super::texture::rotate(e, a, -amount.to_radians())
+        }
+        "rotate3d" => super::texture::rotate_around(e, node)?,
+        "ramplr" | "ramptb" | "splitlr" | "splittb" => ramp(e, node, category),
+        "ramp4" => {
+            let (u, v) = (position(e, node, 0), position(e, node, 1));
+            let corner = ["valuetl", "valuetr", "valuebl", "valuebr"].map(|name| e.input(node, name, [0.0; 4]));
+            let (top, bottom) = (e.exprs.mix(corner[0], corner[1], u), e.exprs.mix(corner[2], corner[3], u));
+            e.exprs.mix(bottom, top, v)
+        }
+        // Tangent space: x along the tangent, z along the normal.
+        "normal" => e.exprs.constant([0.0, 0.0, 1.0, 1.0]),
+        "normalmap" => {
+            let map = e.input(node, "in", [0.5, 0.5, 1.0, 1.0]);
+            let double = e.exprs.scale(map, 2.0);
+            let one = e.exprs.number(1.0);
+            let (normal, scale) = (e.exprs.subtract(double, one), e.uniform(node, "scale", 1.0));
+            let scale = e.exprs.constant([scale, scale, 1.0, 1.0]);
+            e.exprs.multiply(normal, scale)
+        }
+        "" => {
+            e.warn(node, "is a shader without identifier; the input that it drives keeps its default");
+            return None;
+        }
+        _ => {
+            e.warn(node, format!("node \"{category}\" isn't computed; the input that it drives keeps its default"));
+            return None;
+        }
+    })
+}
+
+/// How many numbers a type has.
+fn count(kind: &str) -> u8 {
+    match kind.split('_').next().unwrap_or_default() {
+        kind if kind.ends_with('2') || kind.ends_with("2FA") => 2,
+        kind if kind.ends_with('4') || kind.ends_with("4FA") => 4,
+        "float" | "integer" => 1,
+        _ => 3,
+    }
+}
+
+fn luminance(e: &mut Evaluator<'_, '_>, node: usize, color: Id) -> Id {
+    let coefficients = e.input(node, "lumacoeffs", [0.2722287, 0.6740818, 0.0536895, 0.0]);
+    e.exprs.apply(F::Dot(3), &[color, coefficients])
+}
+
+fn remap(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
+    let [a, in_low, out_low] = ["in", "inlow", "outlow"].map(|name| e.input(node, name, [0.0; 4]));
+    let [in_high, out_high] = ["inhigh", "outhigh"].map(|name| e.input(node, name, [1.0; 4]));
+    let (above, in_range) = (e.exprs.subtract(a, in_low), e.exprs.subtract(in_high, in_low));
+    let (share, out_range) = (e.exprs.apply(F::Divide, &[above, in_range]), e.exprs.subtract(out_high, out_low));
+    let above = e.exprs.multiply(share, out_range);
+    e.exprs.add(above, out_low)
+}
+
+fn range(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
+    let [a, in_low, out_low] = ["in", "inlow", "outlow"].map(|name| e.input(node, name, [0.0; 4]));
+    let [in_high, out_high, gamma] = ["inhigh", "outhigh", "gamma"].map(|name| e.input(node, name, [1.0; 4]));
+    let (above, in_range) = (e.exprs.subtract(a, in_low), e.exprs.subtract(in_high, in_low));
+    let share = e.exprs.apply(F::Divide, &[above, in_range]);
+    let one = e.exprs.number(1.0);
+    let power = e.exprs.apply(F::Divide, &[one, gamma]);
+    let share = if e.exprs.is(power, 1.0) { share } else { e.exprs.apply(F::SafePower, &[share, power]) };
+    let out_range = e.exprs.subtract(out_high, out_low);
+    let above = e.exprs.multiply(share, out_range);
+    let value = e.exprs.add(above, out_low);
+    if e.uniform(node, "doclamp", 0.0) == 0.0 { value } else { e.exprs.apply(F::Clamp, &[value, out_low, out_high]) }
+}
+
+/// The blend nodes: a function of foreground and background, mixed over the background.
+fn blend(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Option<Id> {
+    let [fg, bg] = ["fg", "bg"].map(|name| e.input(node, name, [0.0; 4]));
+    let mix = e.scalar(node, "mix", 1.0);
+    let x = &mut e.exprs;
+    let one = x.number(1.0);
+    let (not_fg, not_bg) = (x.subtract(one, fg), x.subtract(one, bg));
+    let blended = match category {
+        "plus" => x.add(bg, fg),
+        "minus" => x.subtract(bg, fg),
+        "difference" => {
+            let difference = x.subtract(bg, fg);
+            x.apply(F::Absolute, &[difference])
+        }
+        "screen" => {
+            let product = x.multiply(not_fg, not_bg);
+            x.subtract(one, product)
+        }
+        "burn" => {
+            let ratio = x.apply(F::Divide, &[not_bg, fg]);
+            x.subtract(one, ratio)
+        }
+        "dodge" => x.apply(F::Divide, &[bg, not_fg]),
+        "overlay" => {
+            // Per channel: multiplied where the background is dark, screened where it is bright.
+            let (dark, bright) = (x.multiply(fg, bg), x.multiply(not_fg, not_bg));
+            let (dark, bright) = (x.scale(dark, 2.0), x.scale(bright, 2.0));
+            let bright = x.subtract(one, bright);
+            let half = x.number(0.5);
+            let step = x.subtract(bg, half);
+            let step = x.apply(F::Sign, &[step]);
+            let step = x.add(step, one);
+            let step = x.scale(step, 0.5);
+            x.apply(F::Mix, &[dark, bright, step])
+        }
+        _ => return None,
+    };
+    Some(x.mix(bg, blended, mix))
+}
+
+fn convert(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
+    let a = e.input(node, "in", [0.0; 4]);
+    let kind = e.node(node).kind.as_str();
+    let (from, to) = kind.split_once('_').unwrap_or((kind, kind));
+    if to.ends_with('4') && count(from) < 4 {
+        // A color becomes opaque, a number fills all four places but alpha.
+        let parts = [0, 1, 2].map(|place| e.exprs.extract(a, place));
+        let one = e.exprs.number(1.0);
+        return e.exprs.apply(F::Combine, &[parts[0], parts[1], parts[2], one]);
+    }
+    if to == "float" { e.exprs.extract(a, 0) } else { a }
+}
+
+fn combine(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
+    let data = e.node(node);
+    let first = e.input(node, "in1", [0.0; 4]);
+    let second = e.input(node, "in2", [0.0; 4]);
+    if data.kind.starts_with("color4") && data.category == "combine2" {
+        let parts = [0, 1, 2].map(|place| e.exprs.extract(first, place));
+        return e.exprs.apply(F::Combine, &[parts[0], parts[1], parts[2], second]);
+    }
+    let mut args = vec![first, second];
+    for (i, name) in ["in3", "in4"].into_iter().enumerate() {
+        if data.category.ends_with(['3', '4']) && (i == 0 || data.category.ends_with('4')) {
+            args.push(e.input(node, name, [0.0; 4]));
+        }
+    }
+    // Two texture coordinates that are taken apart and put together again are the same.
+    let uv = |id: Id, place: u8| match e.exprs.op(id) {
+        Op::Apply(F::Swizzle(places), args) if *places == [place; 4] => Some(args[0]),
+        _ => None,
+    };
+    if let (2, Some(u), Some(v)) = (args.len(), uv(args[0], 0), uv(args[1], 1))
+        && u == v
+    {
+        return u;
+    }
+    e.exprs.apply(F::Combine, &args)
+}
+
+/// `channels` of a version 1.38 swizzle: letters, or the digits 0 and 1.
+fn swizzle(e: &mut Evaluator<'_, '_>, a: Id, channels: &str) -> Id {
+    let parts: Vec<Id> = channels
+        .chars()
+        .take(4)
+        .map(|c| match c {
+            'r' | 'x' => e.exprs.extract(a, 0),
+            'g' | 'y' => e.exprs.extract(a, 1),
+            'b' | 'z' => e.exprs.extract(a, 2),
+            'a' | 'w' => e.exprs.extract(a, 3),
+            c => e.exprs.number(f64::from(u8::from(c == '1'))),
+        })
+        .collect();
+    match parts.as_slice() {
+        [] => a,
+        [one] => *one,
+        _ if "rgba".starts_with(channels) || "xyzw".starts_with(channels) => a,
+        _ => e.exprs.apply(F::Combine, &parts),
+    }
+}
+
+/// One of the coordinates that a ramp goes along.
+fn position(e: &mut Evaluator<'_, '_>, node: usize, place: u8) -> Id {
+    let uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
+    let along = e.exprs.extract(uv, place);
+    let (zero, one) = (e.exprs.number(0.0), e.exprs.number(1.0));
+    e.exprs.apply(F::Clamp, &[along, zero, one])
+}
+
+fn ramp(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Id {
+    let across = category.ends_with("lr");
+    let names = if across { ["valuel", "valuer"] } else { ["valueb", "valuet"] };
+    let [low, high] = names.map(|name| e.input(node, name, [0.0; 4]));
+    let along = position(e, node, u8::from(!across));
+    if category.starts_with("ramp") {
+        return e.exprs.mix(low, high, along);
+    }
+    let center = e.scalar(node, "center", 0.5);
+    e.exprs.apply(F::IfGreaterOrEqual, &[along, center, high, low])
+}

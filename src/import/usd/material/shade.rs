@@ -1,0 +1,155 @@
+//! UsdShade prims to a `Network`.
+
+use std::collections::{BTreeMap, HashMap};
+
+use openusd::sdf;
+use openusd::usd::{Attribute, Prim};
+use openusd_schemas::shade::{self, ProducerFilter};
+
+use super::super::images::File;
+use super::super::stage::Reading;
+use super::network::{Input, Network, Node, Source, Value, category};
+
+/// The longest chain of nodes that is followed.
+const DEEPEST: usize = 200;
+
+/// The network behind `output`, an output of a material, and its last node. `None` where nothing is
+/// connected.
+pub(super) fn network(reading: &Reading<'_>, output: &Attribute) -> Option<(Network, Source)> {
+    let mut builder = Builder { reading, network: Network::default(), known: HashMap::new() };
+    let producer = builder.producer(output)?;
+    let source = builder.source(&producer, 0)?;
+    Some((builder.network, source))
+}
+
+struct Builder<'a, 'r> {
+    reading: &'a Reading<'r>,
+    network: Network,
+    known: HashMap<sdf::Path, usize>,
+}
+
+impl Builder<'_, '_> {
+    /// The attribute that gives `attribute` its value: itself, an output of a node, or an interface input.
+    fn producer(&self, attribute: &Attribute) -> Option<Attribute> {
+        let typed = match attribute.name().starts_with("outputs:") {
+            true => shade::Output::from_attribute(attribute.clone())?.value_producing_attributes(ProducerFilter::Any),
+            false => shade::Input::from_attribute(attribute.clone())?.value_producing_attributes(ProducerFilter::Any),
+        };
+        match typed {
+            Ok(found) => Some(found.first()?.attribute().clone()),
+            Err(error) => {
+                self.reading.warn(attribute.path(), format!("its connections can't be followed: {error}"));
+                None
+            }
+        }
+    }
+
+    /// The node that `producer`, an output, stands on.
+    fn source(&mut self, producer: &Attribute, depth: usize) -> Option<Source> {
+        let output = producer.name().strip_prefix("outputs:")?.to_string();
+        let node = self.node(&producer.prim(), depth)?;
+        Some(Source { node, output })
+    }
+
+    fn node(&mut self, prim: &Prim, depth: usize) -> Option<usize> {
+        if let Some(&known) = self.known.get(prim.path()) {
+            return Some(known);
+        }
+        if depth > DEEPEST {
+            self.reading.warn(prim.path(), format!("its network is deeper than {DEEPEST} nodes; cut off here"));
+            return None;
+        }
+        let id = self.text(&prim.attribute("info:id")).unwrap_or_default();
+        let (name, kind) = category(&id);
+        let node = Node {
+            category: name.to_string(),
+            kind: kind.to_string(),
+            place: self.reading.place_of(prim.path()),
+            inputs: BTreeMap::new(),
+        };
+        let index = self.network.nodes.len();
+        self.network.nodes.push(node);
+        self.known.insert(prim.path().clone(), index);
+        let inputs = prim.authored_attributes().unwrap_or_default();
+        for attribute in inputs {
+            if let Some(name) = attribute.name().strip_prefix("inputs:") {
+                let (name, input) = (name.to_string(), self.input(&attribute, depth));
+                self.network.nodes[index].inputs.insert(name, input);
+            }
+        }
+        Some(index)
+    }
+
+    fn input(&mut self, attribute: &Attribute, depth: usize) -> Input {
+        let Some(producer) = self.producer(attribute) else { return Input::default() };
+        if producer.name().starts_with("outputs:")
+            && let Some(source) = self.source(&producer, depth + 1)
+        {
+            return Input { source: Some(source), ..Input::default() };
+        }
+        let color_space = [attribute, &producer]
+            .into_iter()
+            .find_map(|a| a.get_metadata::<sdf::Value>("colorSpace").ok().flatten().and_then(text_of));
+        Input { value: self.value(&producer), source: None, color_space }
+    }
+
+    fn raw(&self, attribute: &Attribute) -> Option<sdf::Value> {
+        match attribute.get_at::<sdf::Value>(self.reading.time) {
+            Ok(value) => value,
+            Err(error) => {
+                self.reading.warn(attribute.path(), format!("{error}; taken for not authored"));
+                None
+            }
+        }
+    }
+
+    fn text(&self, attribute: &Attribute) -> Option<String> {
+        self.raw(attribute).and_then(text_of)
+    }
+
+    fn value(&self, attribute: &Attribute) -> Option<Value> {
+        let value = self.raw(attribute)?;
+        if let sdf::Value::AssetPath(asset) = value {
+            let layer = attribute.property_stack().ok().and_then(|stack| stack.into_iter().next());
+            return Some(Value::File(File::find(&asset, layer.as_ref().map(|site| site.layer.as_str()))));
+        }
+        match numbers_of(&value) {
+            Some((numbers, count)) => Some(Value::Numbers(numbers, count)),
+            None => text_of(value).map(Value::Text),
+        }
+    }
+}
+
+fn text_of(value: sdf::Value) -> Option<String> {
+    match value {
+        sdf::Value::Token(text) => Some(text.to_string()),
+        sdf::Value::String(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// One to four numbers, and how many.
+fn numbers_of(value: &sdf::Value) -> Option<([f64; 4], u8)> {
+    use sdf::Value as V;
+    let two = |v: [f64; 2]| Some(([v[0], v[1], 0.0, 0.0], 2));
+    let three = |v: [f64; 3]| Some(([v[0], v[1], v[2], 0.0], 3));
+    let one = |v: f64| Some(([v, 0.0, 0.0, 0.0], 1));
+    match value.clone() {
+        V::Bool(v) => one(f64::from(u8::from(v))),
+        V::Uchar(v) => one(f64::from(v)),
+        V::Int(v) => one(f64::from(v)),
+        V::Uint(v) => one(f64::from(v)),
+        V::Int64(v) => one(v as f64),
+        V::Uint64(v) => one(v as f64),
+        V::Half(v) => one(v.to_f64()),
+        V::Float(v) => one(f64::from(v)),
+        V::Double(v) => one(v),
+        V::Vec2h(v) => two([v.x.to_f64(), v.y.to_f64()]),
+        V::Vec2f(v) => two([v.x.into(), v.y.into()]),
+        V::Vec2d(v) => two([v.x, v.y]),
+        V::Vec2i(v) => two([v.x.into(), v.y.into()]),
+        V::Vec3i(_) | V::Vec3h(_) | V::Vec3f(_) | V::Vec3d(_) => three(value.clone().cast::<[f64; 3]>().ok()?),
+        V::Vec4i(_) | V::Vec4h(_) | V::Vec4f(_) | V::Vec4d(_) => Some((value.clone().cast::<[f64; 4]>().ok()?, 4)),
+        _ => None,
+    }
+}

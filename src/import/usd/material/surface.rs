@@ -1,0 +1,359 @@
+//! What every shading model fills in, and how that becomes a `MaterialDesc`.
+
+use std::sync::Arc;
+
+use super::bake;
+use super::evaluate::Evaluator;
+use super::expr::{Id, Lookup, Op};
+use super::function::{Function, V};
+use crate::desc::{
+    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, ColorSpace, ImageDesc, IridescenceDesc, MaterialDesc,
+    NormalInput, PixelData, ScalarInput, SheenDesc, TextureDesc, TextureRef, VolumeDesc,
+};
+
+/// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    pub base_color: Id,
+    pub metallic: Id,
+    /// Perceptual.
+    pub roughness: Id,
+    pub ior: Id,
+    pub specular: Id,
+    pub specular_color: Id,
+    pub transmission: Id,
+    /// No inside.
+    pub thin_walled: bool,
+    /// Metres and the color that white has there.
+    pub attenuation: Option<(f64, Id)>,
+    pub dispersion: f64,
+    pub coat: Option<Coat>,
+    /// Color and roughness.
+    pub sheen: Option<(Id, Id)>,
+    pub film: Option<Film>,
+    /// Strength, and direction in radians.
+    pub anisotropy: Option<(Id, f64)>,
+    /// Radiance.
+    pub emission: Id,
+    pub opacity: Id,
+    pub alpha: Alpha,
+    pub normal: Option<Id>,
+    pub occlusion: Option<Id>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coat {
+    pub weight: Id,
+    pub roughness: Id,
+    pub ior: Id,
+    pub normal: Option<Id>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Film {
+    pub weight: Id,
+    pub ior: Id,
+    /// Nanometres.
+    pub thickness: Id,
+}
+
+/// How opacity is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Alpha {
+    /// It is not.
+    Ignored,
+    /// Where it reaches the value.
+    Mask(f64),
+    /// As a share; opaque where it is 1 everywhere.
+    Blend,
+}
+
+/// A material and what it needs of the shapes that it is bound to.
+#[derive(Clone, Debug)]
+pub(super) struct Finished {
+    pub material: MaterialDesc,
+    pub colors: VertexColors,
+}
+
+/// Primvars that a shape's vertex colors hold for its material.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in super::super) struct VertexColors {
+    /// Multiplied onto the base color.
+    pub color: Option<Arc<str>>,
+    /// Multiplied onto alpha.
+    pub opacity: Option<Arc<str>>,
+}
+
+impl Surface {
+    /// A white dielectric that does nothing else.
+    pub fn new(e: &mut Evaluator<'_, '_>) -> Self {
+        let x = &mut e.exprs;
+        let (zero, one) = (x.number(0.0), x.number(1.0));
+        Self {
+            base_color: one,
+            metallic: zero,
+            roughness: x.number(0.5),
+            ior: x.number(1.5),
+            specular: one,
+            specular_color: one,
+            transmission: zero,
+            thin_walled: false,
+            attenuation: None,
+            dispersion: 0.0,
+            coat: None,
+            sheen: None,
+            film: None,
+            anisotropy: None,
+            emission: zero,
+            opacity: one,
+            alpha: Alpha::Blend,
+            normal: None,
+            occlusion: None,
+        }
+    }
+}
+
+/// The surface as a material; `node` is where warnings are told.
+pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -> Finished {
+    let mut f = Finisher { e, node };
+    let (color, base_color) = f.without_primvar(surface.base_color);
+    let (opacity, alpha) = f.without_primvar(surface.opacity);
+    let mut colors = VertexColors { color, opacity };
+    let mut material = MaterialDesc {
+        base_color: f.color("base color", base_color),
+        metallic: f.scalar("metalness", surface.metallic),
+        roughness: f.scalar("roughness", surface.roughness),
+        ior: f.number("index of refraction", surface.ior),
+        specular: f.scalar("specular weight", surface.specular),
+        specular_color: f.color("specular color", surface.specular_color),
+        transmission: f.scalar("transmission", surface.transmission),
+        dispersion: surface.dispersion.max(0.0),
+        emission: f.color("emission", surface.emission),
+        alpha: f.scalar("opacity", alpha),
+        normal: surface.normal.and_then(|id| f.normal("normal", id)),
+        occlusion: surface.occlusion.and_then(|id| f.occlusion(id)),
+        ..MaterialDesc::default()
+    };
+    material.alpha_mode = match surface.alpha {
+        Alpha::Ignored => AlphaMode::Opaque,
+        Alpha::Mask(cutoff) => AlphaMode::Mask { cutoff },
+        Alpha::Blend if material.alpha == ScalarInput::constant(1.0) && colors.opacity.is_none() => AlphaMode::Opaque,
+        Alpha::Blend => AlphaMode::Blend,
+    };
+    if material.alpha_mode == AlphaMode::Opaque {
+        (material.alpha, colors.opacity) = (ScalarInput::constant(1.0), None);
+    }
+    if material.transmission.factor > 0.0 && !surface.thin_walled {
+        let (distance, color) = surface.attenuation.unwrap_or((f64::INFINITY, f.e.exprs.number(1.0)));
+        material.volume = Some(VolumeDesc {
+            // Any thickness: light is followed through the inside.
+            thickness: ScalarInput::constant(1.0),
+            attenuation_distance: distance,
+            attenuation_color: f.rgb("transmission color", color),
+        });
+    }
+    material.coat = surface.coat.filter(|coat| !f.e.exprs.is(coat.weight, 0.0)).map(|coat| CoatDesc {
+        weight: f.scalar("coat weight", coat.weight),
+        roughness: f.scalar("coat roughness", coat.roughness),
+        ior: f.number("coat index of refraction", coat.ior),
+        normal: coat.normal.and_then(|id| f.normal("coat normal", id)),
+    });
+    material.sheen = surface.sheen.filter(|(color, _)| !f.e.exprs.is(*color, 0.0)).map(|(color, roughness)| {
+        SheenDesc { color: f.color("sheen color", color), roughness: f.scalar("sheen roughness", roughness) }
+    });
+    material.iridescence =
+        surface.film.filter(|film| !f.e.exprs.is(film.weight, 0.0) && !f.e.exprs.is(film.thickness, 0.0)).map(|film| {
+            let thickness = f.scalar("thin film thickness", film.thickness);
+            IridescenceDesc {
+                weight: f.scalar("thin film weight", film.weight),
+                ior: f.number("thin film index of refraction", film.ior),
+                thickness_min: if thickness.texture.is_some() { 0.0 } else { thickness.factor },
+                thickness_max: thickness.factor,
+                thickness_texture: thickness.texture,
+            }
+        });
+    material.anisotropy =
+        surface.anisotropy.filter(|(strength, _)| !f.e.exprs.is(*strength, 0.0)).map(|(strength, rotation)| {
+            AnisotropyDesc { strength: f.number("anisotropy", strength), rotation, texture: None }
+        });
+    Finished { material, colors }
+}
+
+struct Finisher<'e, 'm, 'a> {
+    e: &'e mut Evaluator<'m, 'a>,
+    node: usize,
+}
+
+impl Finisher<'_, '_, '_> {
+    fn color(&mut self, what: &str, id: Id) -> ColorInput {
+        let id = self.textures_only(what, id);
+        match self.e.exprs.op(id) {
+            Op::Constant([r, g, b, _]) => ColorInput::constant([*r, *g, *b]),
+            Op::Lookup(l) if l.bias[..3] == [0.0; 3] && is_color(l) => {
+                ColorInput { factor: [l.factor[0], l.factor[1], l.factor[2]], texture: Some(l.texture) }
+            }
+            _ => ColorInput { factor: [1.0; 3], texture: self.bake(what, id, 3) },
+        }
+    }
+
+    fn scalar(&mut self, what: &str, id: Id) -> ScalarInput {
+        let id = self.textures_only(what, id);
+        match self.e.exprs.op(id) {
+            Op::Constant(value) => ScalarInput::constant(value[0]),
+            Op::Lookup(l) if l.bias[0] == 0.0 => {
+                ScalarInput { factor: l.factor[0], texture: Some((l.texture, channel(l.swizzle[0]))) }
+            }
+            _ => ScalarInput { factor: 1.0, texture: self.bake(what, id, 1).map(|texture| (texture, Channel::R)) },
+        }
+    }
+
+    /// A number that can't be textured: the mean of one that is.
+    fn number(&mut self, what: &str, id: Id) -> f64 {
+        self.mean(what, id)[0]
+    }
+
+    fn rgb(&mut self, what: &str, id: Id) -> [f64; 3] {
+        let [r, g, b, _] = self.mean(what, id);
+        [r, g, b]
+    }
+
+    fn mean(&mut self, what: &str, id: Id) -> V {
+        let id = self.textures_only(what, id);
+        if let Some(value) = self.e.exprs.known(id) {
+            return value;
+        }
+        self.e.warn(self.node, format!("its {what} can't vary over the surface; the mean is used"));
+        let materials = &*self.e.materials;
+        bake::mean(&self.e.exprs, id, materials.tables())
+    }
+
+    /// A tangent-space normal, −1 to 1.
+    fn normal(&mut self, what: &str, id: Id) -> Option<NormalInput> {
+        let id = self.textures_only(what, id);
+        match self.e.exprs.op(id) {
+            Op::Constant([x, y, ..]) => {
+                if *x != 0.0 || *y != 0.0 {
+                    self.e.warn(self.node, format!("its {what} is the same tilt everywhere, which isn't read"));
+                }
+                return None;
+            }
+            // 2 t − 1, the first two times a factor, which is how maps are stored.
+            Op::Lookup(l) if is_color(l) && l.factor[2] == 2.0 && l.bias[2] == -1.0 => {
+                let scale = l.factor[0] / 2.0;
+                let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                if close(l.factor[1], l.factor[0]) && close(l.bias[0], -scale) && close(l.bias[1], -scale) {
+                    return Some(NormalInput { texture: l.texture, scale });
+                }
+            }
+            _ => {}
+        }
+        let half = self.e.exprs.number(0.5);
+        let stored = self.e.exprs.apply(Function::Normalize(3), &[id]);
+        let stored = self.e.exprs.multiply(stored, half);
+        let stored = self.e.exprs.add(stored, half);
+        Some(NormalInput { texture: self.bake(what, stored, 3)?, scale: 1.0 })
+    }
+
+    /// The factor of an occlusion is its strength.
+    fn occlusion(&mut self, id: Id) -> Option<ScalarInput> {
+        let id = self.textures_only("occlusion", id);
+        if self.e.exprs.known(id).is_some() {
+            return None;
+        }
+        let input = self.scalar("occlusion", id);
+        if input.factor == 1.0 {
+            return Some(input);
+        }
+        let texture = self.bake("occlusion", id, 1)?;
+        Some(ScalarInput { factor: 1.0, texture: Some((texture, Channel::R)) })
+    }
+
+    /// A primvar that multiplies all the rest, and the rest.
+    fn without_primvar(&mut self, id: Id) -> (Option<Arc<str>>, Id) {
+        let primvar = |e: &Evaluator<'_, '_>, id: Id| match e.exprs.op(id) {
+            Op::Primvar { name, .. } => Some(name.clone()),
+            Op::Apply(Function::Swizzle(_), args) => match e.exprs.op(args[0]) {
+                Op::Primvar { name, .. } => Some(name.clone()),
+                _ => None,
+            },
+            _ => None,
+        };
+        if let Some(name) = primvar(self.e, id) {
+            return (Some(name), self.e.exprs.number(1.0));
+        }
+        if let Op::Apply(Function::Multiply, args) = self.e.exprs.op(id).clone()
+            && let [a, b] = args[..]
+        {
+            if let Some(name) = primvar(self.e, a) {
+                return (Some(name), b);
+            }
+            if let Some(name) = primvar(self.e, b) {
+                return (Some(name), a);
+            }
+        }
+        (None, id)
+    }
+
+    /// The expression with primvars replaced by their fallbacks.
+    fn textures_only(&mut self, what: &str, id: Id) -> Id {
+        let needed = self.e.exprs.needed(id);
+        let mut replaced: Vec<(Id, Id)> = Vec::new();
+        for old in needed {
+            match self.e.exprs.op(old).clone() {
+                Op::Primvar { name, fallback } => {
+                    let what =
+                        format!("its {what} goes by primvars:{name}, which isn't read there; the fallback is used");
+                    self.e.warn(self.node, what);
+                    let new = self.e.exprs.constant(fallback);
+                    replaced.push((old, new));
+                }
+                Op::Apply(function, args) if args.iter().any(|arg| replaced.iter().any(|(old, _)| old == arg)) => {
+                    let new = |arg: &Id| replaced.iter().find(|(old, _)| old == arg).map_or(*arg, |(_, new)| *new);
+                    let args: Vec<Id> = args.iter().map(new).collect();
+                    let new = self.e.exprs.apply(function, &args);
+                    replaced.push((old, new));
+                }
+                _ => {}
+            }
+        }
+        replaced.iter().find(|(old, _)| *old == id).map_or(id, |(_, new)| *new)
+    }
+
+    /// A computed image; `None` where nothing textures it.
+    fn bake(&mut self, what: &str, id: Id, channels: u8) -> Option<TextureRef> {
+        let Evaluator { materials, exprs, .. } = &mut *self.e;
+        let domain = bake::domain(exprs, id, materials.tables())?;
+        let pixels = bake::image(exprs, id, &domain, materials.tables(), channels);
+        let place = self.e.node(self.node).place.clone();
+        for note in &domain.notes {
+            self.e.warn(self.node, format!("its {what} is computed into an image: {note}"));
+        }
+        let [width, height] = domain.size;
+        let image = self.e.materials.images.push(ImageDesc {
+            name: what.into(),
+            place: place.clone(),
+            width,
+            height,
+            channels,
+            color_space: ColorSpace::Linear,
+            pixels: PixelData::F16(pixels),
+        });
+        let [wrap_u, wrap_v] = domain.wrap;
+        let texture = self.e.materials.texture(TextureDesc { place, image, wrap_u, wrap_v, filter: domain.filter });
+        Some(TextureRef { texture, uv_set: domain.uv_set, transform: domain.transform })
+    }
+}
+
+/// Whether a lookup reads red, green and blue as they stand; all three are the same in grey images.
+fn is_color(lookup: &Lookup) -> bool {
+    lookup.swizzle[..3] == [0, 1, 2] || (lookup.channels <= 2 && lookup.swizzle[..3].iter().all(|place| *place < 3))
+}
+
+fn channel(place: u8) -> Channel {
+    match place {
+        0 => Channel::R,
+        1 => Channel::G,
+        2 => Channel::B,
+        _ => Channel::A,
+    }
+}

@@ -1,0 +1,237 @@
+//! Nodes that look images up, and those that place them.
+
+use super::super::images::{File, Space};
+use super::super::udim;
+use super::color;
+use super::evaluate::Evaluator;
+use super::expr::{Id, Lookup, Op, placement};
+use super::function::{Function, V};
+use super::network::Value;
+use crate::desc::{Filter, PixelData, TextureDesc, TextureRef, Wrap};
+
+/// A lookup as a node asks for it.
+struct Wish<'n> {
+    file: Option<&'n File>,
+    space: Space,
+    uv: Id,
+    wrap: [Wrap; 2],
+    filter: Filter,
+}
+
+/// UsdUVTexture, all four channels.
+pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
+    let data = e.node(node);
+    let fallback = e.input(node, "fallback", [0.0, 0.0, 0.0, 1.0]);
+    let space = match data.text("sourceColorSpace").unwrap_or("auto") {
+        "raw" => Space::Raw,
+        "sRGB" => Space::Srgb,
+        "auto" | "" => Space::Auto,
+        other => {
+            e.warn(node, format!("sourceColorSpace \"{other}\" isn't known; taken as auto"));
+            Space::Auto
+        }
+    };
+    let of_mtlx = data.place.file.as_deref().is_some_and(|file| file.extension().is_some_and(|x| x == "mtlx"));
+    let uv = match e.optional(node, "st") {
+        Some(uv) if data.inputs.get("st").is_some_and(|st| st.source.is_some()) => uv,
+        _ => {
+            if !of_mtlx {
+                e.warn(node, "its st is not connected; primvars:st is used");
+            }
+            e.texcoord("st".into())
+        }
+    };
+    let wrap = ["wrapS", "wrapT"].map(|name| match data.text(name) {
+        Some("repeat" | "periodic") => Wrap::Repeat,
+        Some("clamp") => Wrap::Clamp,
+        Some("mirror") => Wrap::Mirror,
+        // MaterialX's definition of the node repeats.
+        None if of_mtlx => Wrap::Repeat,
+        // "useMetadata" is black for files without; of what is read here none has any.
+        _ => Wrap::Black,
+    });
+    let wish = Wish { file: file(e, node), space, uv, wrap, filter: Filter::Linear };
+    let texel = match look_up(e, node, &wish) {
+        Ok(texel) => texel,
+        Err(what) => {
+            let [r, g, b, a] = e.exprs.known(fallback).unwrap_or_default();
+            e.warn(node, format!("{what}; its fallback ({r}, {g}, {b}, {a}) is used"));
+            return Some(fallback);
+        }
+    };
+    let (scale, bias) = (e.input(node, "scale", [1.0; 4]), e.input(node, "bias", [0.0; 4]));
+    let scaled = e.exprs.multiply(texel, scale);
+    Some(e.exprs.add(scaled, bias))
+}
+
+/// MaterialX's image and tiledimage.
+pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Option<Id> {
+    let data = e.node(node);
+    let default = e.input(node, "default", [0.0; 4]);
+    let named = data.inputs.get("file").and_then(|file| file.color_space.as_deref()).unwrap_or_default();
+    let is_color = data.kind.starts_with("color");
+    let (space, rest) = match color::decoding(named) {
+        Some(_) if !is_color => (Space::Raw, ""),
+        Some(_) if named.is_empty() => (Space::Auto, ""),
+        Some(known) => known,
+        None => {
+            e.warn(node, format!("color space \"{named}\" isn't known; taken by the kind of the file"));
+            (Space::Auto, "")
+        }
+    };
+    let mut uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
+    if tiled {
+        let tiling = e.input(node, "uvtiling", [1.0; 4]);
+        let offset = e.input(node, "uvoffset", [0.0; 4]);
+        let (size, tile) =
+            (e.input(node, "realworldimagesize", [1.0; 4]), e.input(node, "realworldtilesize", [1.0; 4]));
+        let tiled = e.exprs.multiply(uv, tiling);
+        let moved = e.exprs.subtract(tiled, offset);
+        let sized = e.exprs.apply(Function::Divide, &[moved, size]);
+        uv = e.exprs.multiply(sized, tile);
+    }
+    let wrap = ["uaddressmode", "vaddressmode"].map(|name| match data.text(name) {
+        Some("clamp") => Wrap::Clamp,
+        Some("mirror") => Wrap::Mirror,
+        Some("constant") => Wrap::Black,
+        _ => Wrap::Repeat,
+    });
+    let filter = if data.text("filtertype") == Some("closest") { Filter::Nearest } else { Filter::Linear };
+    let wish = Wish { file: file(e, node), space, uv, wrap, filter };
+    match look_up(e, node, &wish) {
+        // A number is the first channel.
+        Ok(texel) if data.kind == "float" => Some(e.exprs.extract(texel, 0)),
+        Ok(texel) => Some(color::convert(&mut e.exprs, texel, rest).unwrap_or(texel)),
+        Err(what) => {
+            e.warn(node, format!("{what}; the node's default is used"));
+            Some(default)
+        }
+    }
+}
+
+fn file<'m>(e: &Evaluator<'m, '_>, node: usize) -> Option<&'m File> {
+    match &e.node(node).inputs.get("file")?.value {
+        Some(Value::File(file)) => Some(file),
+        _ => None,
+    }
+}
+
+fn look_up(e: &mut Evaluator<'_, '_>, node: usize, wish: &Wish<'_>) -> Result<Id, String> {
+    let Op::Uv { set, mut rows } = *e.exprs.op(wish.uv) else {
+        e.warn(node, "its texture coordinates are more than a placement of a primvar; primvars:st is used");
+        let uv = e.texcoord("st".into());
+        return look_up(e, node, &Wish { uv, ..*wish });
+    };
+    let (image, wrap) = match wish.file {
+        None => return Err("names no image".to_string()),
+        Some(File::Missing(what)) => return Err(what.clone()),
+        Some(File::One(file)) => (e.materials.images.get(file, wish.space)?, wish.wrap),
+        Some(File::Tiles(tiles)) => {
+            let (image, [columns, lines]) = e.materials.udim(tiles, wish.space)?;
+            rows[0] = rows[0].map(|x| x / f64::from(columns));
+            rows[1] = rows[1].map(|x| x / f64::from(lines));
+            (image, [Wrap::Black; 2])
+        }
+    };
+    let desc = &e.materials.images.images[image as usize];
+    let (channels, unit) = (desc.channels, matches!(desc.pixels, PixelData::U8(_) | PixelData::U16(_)));
+    let place = e.node(node).place.clone();
+    let texture = TextureDesc { place, image, wrap_u: wrap[0], wrap_v: wrap[1], filter: wish.filter };
+    let texture = e.materials.texture(texture);
+    let texture = TextureRef { texture, uv_set: set, transform: placement(rows) };
+    let swizzle = [0, 1, 2, 3];
+    Ok(e.exprs.push(Op::Lookup(Lookup { texture, channels, unit, swizzle, factor: [1.0; 4], bias: [0.0; 4] })))
+}
+
+/// UsdTransform2d: scaled, then turned counter-clockwise by degrees, then moved.
+pub(super) fn transform(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
+    let uv = e.optional(node, "in").unwrap_or_else(|| e.texcoord("st".into()));
+    let scale = e.input(node, "scale", [1.0; 4]);
+    let (angle, offset) = (e.uniform(node, "rotation", 0.0), e.input(node, "translation", [0.0; 4]));
+    let scaled = e.exprs.multiply(uv, scale);
+    let turned = rotate(e, scaled, angle.to_radians());
+    Some(e.exprs.add(turned, offset))
+}
+
+/// MaterialX's place2d: what it does to the image, hence the inverse to the coordinates.
+pub(super) fn place(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
+    let uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
+    let (pivot, offset) = (e.input(node, "pivot", [0.0; 4]), e.input(node, "offset", [0.0; 4]));
+    let scale = e.input(node, "scale", [1.0; 4]);
+    let angle = -e.uniform(node, "rotate", 0.0).to_radians();
+    let offset_first = e.uniform(node, "operationorder", 0.0) != 0.0;
+    let mut uv = e.exprs.subtract(uv, pivot);
+    if offset_first {
+        uv = e.exprs.subtract(uv, offset);
+        uv = rotate(e, uv, angle);
+        uv = e.exprs.apply(Function::Divide, &[uv, scale]);
+    } else {
+        uv = e.exprs.apply(Function::Divide, &[uv, scale]);
+        uv = rotate(e, uv, angle);
+        uv = e.exprs.subtract(uv, offset);
+    }
+    Some(e.exprs.add(uv, pivot))
+}
+
+/// The first two numbers turned counter-clockwise, in radians.
+pub(super) fn rotate(e: &mut Evaluator<'_, '_>, uv: Id, angle: f64) -> Id {
+    if angle == 0.0 {
+        return uv;
+    }
+    let (sin, cos) = angle.sin_cos();
+    if let Op::Uv { set, rows: [u, v] } = *e.exprs.op(uv) {
+        let row = |a: f64, b: f64| -> [f64; 3] { std::array::from_fn(|i| a * u[i] + b * v[i]) };
+        return e.exprs.push(Op::Uv { set, rows: [row(cos, -sin), row(sin, cos)] });
+    }
+    let swapped = e.exprs.swizzle(uv, [1, 0, 2, 3]);
+    let (straight, across) = (e.exprs.constant([cos, cos, 1.0, 1.0]), e.exprs.constant([-sin, sin, 0.0, 0.0]));
+    let (straight, across) = (e.exprs.multiply(uv, straight), e.exprs.multiply(swapped, across));
+    e.exprs.add(straight, across)
+}
+
+/// rotate3d around z, which is how Blender turns texture coordinates. MaterialX turns clockwise (`v · M`);
+/// Blender's exporter writes angles that are meant the other way.
+pub(super) fn rotate_around(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
+    let value = e.optional(node, "in")?;
+    let angle = e.uniform(node, "amount", 0.0).to_radians();
+    let axis: V = match e.node(node).inputs.get("axis").and_then(|axis| axis.value.as_ref()) {
+        Some(Value::Numbers(axis, _)) => *axis,
+        _ => [0.0, 1.0, 0.0, 0.0],
+    };
+    if angle == 0.0 {
+        return Some(value);
+    }
+    if axis[0] != 0.0 || axis[1] != 0.0 || axis[2] == 0.0 {
+        e.warn(node, "turns around another axis than z, which isn't computed; left out");
+        return Some(value);
+    }
+    let clockwise = if e.materials.reading.blender { -1.0 } else { 1.0 };
+    Some(rotate(e, value, -clockwise * axis[2].signum() * angle))
+}
+
+impl super::Materials<'_> {
+    /// One image of the tiles of a UDIM set, and its columns and rows.
+    fn udim(&mut self, tiles: &[(u32, String)], space: Space) -> Result<(u32, [u32; 2]), String> {
+        let key = (tiles.first().map(|tile| tile.1.clone()).unwrap_or_default(), space == Space::Raw);
+        if let Some(known) = self.udims.get(&key) {
+            return known.clone();
+        }
+        let made = udim::picture(&mut self.images, tiles, space);
+        let made = made.map(|(image, size)| (self.images.push(image), size));
+        self.udims.insert(key, made.clone());
+        made
+    }
+
+    /// Index of a texture, the same for the same one.
+    pub(super) fn texture(&mut self, texture: TextureDesc) -> u32 {
+        let same = |known: &TextureDesc| {
+            let way = |t: &TextureDesc| (t.image, t.wrap_u, t.wrap_v, t.filter);
+            way(known) == way(&texture)
+        };
+        let known = self.textures.iter().position(same);
+        known.unwrap_or_else(|| {
+            self.textures.push(texture);
+            self.textures.len() - 1
+        }) as u32
+    }
+}
