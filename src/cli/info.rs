@@ -1,6 +1,7 @@
 //! `penumbra info`: what was read from a scene.
 
 mod lights;
+mod values;
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use penumbra::desc::{ProjectionDesc, SceneDesc};
@@ -21,11 +22,21 @@ pub fn command() -> Command {
                 .help("Frame to read"),
         )
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
+        .arg(
+            Arg::new("values")
+                .long("values")
+                .action(ArgAction::SetTrue)
+                .requires("json")
+                .help("With --json: every matrix, point and light value, too"),
+        )
 }
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied())?;
-    let info = describe(&scene, &warnings);
+    let mut info = describe(&scene, &warnings);
+    if args.get_flag("values") {
+        info["values"] = values::describe(&scene);
+    }
     if args.get_flag("json") {
         say::out(format!("{info:#}\n"));
     } else {

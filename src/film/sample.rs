@@ -110,12 +110,14 @@ impl PixelSample {
             &mut self.irradiance_shadowed,
             &mut self.irradiance_unshadowed,
         ];
-        let of_group = |group| {
-            let GroupSample { combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed } = group;
-            [combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed]
-        };
-        for color in once.into_iter().chain(self.groups.iter_mut().flat_map(of_group)) {
+        for color in once {
             *color *= factor;
+        }
+        for group in &mut self.groups {
+            let GroupSample { combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed } = group;
+            for color in [combined, lit, unshadowed, irradiance_shadowed, irradiance_unshadowed] {
+                *color *= factor;
+            }
         }
     }
 

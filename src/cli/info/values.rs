@@ -1,0 +1,185 @@
+//! Every value of a scene as JSON, for tests that compare them with another program's: `--values`.
+//!
+//! Numbers are those of `SceneDesc`, in its space (y up) and units (metres, radiance, radians). A matrix
+//! has 16 numbers, the images of the x, y and z axis and of the origin, four each: the layout of USD and
+//! of glTF alike.
+
+use penumbra::desc::{
+    Attribute, CameraDesc, ConeDesc, DecayLaw, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
+    ProjectionDesc, SceneDesc, Visibility,
+};
+use penumbra::error::Place;
+use penumbra::math::{DAffine3, DMat4};
+use serde_json::{Value, json};
+
+/// All of `scene`.
+pub fn describe(scene: &SceneDesc) -> Value {
+    json!({
+        "meshes": scene.meshes.iter().map(mesh).collect::<Vec<_>>(),
+        "instances": scene.instances.iter().map(|i| instance(i, scene)).collect::<Vec<_>>(),
+        "lights": scene.lights.iter().map(|l| light(l, scene)).collect::<Vec<_>>(),
+        "cameras": scene.cameras.iter().map(camera).collect::<Vec<_>>(),
+        "render": {
+            "camera": scene.render.camera.as_deref(),
+            "resolution": scene.render.resolution,
+            "passes": scene.render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
+            "product": scene.render.product.as_deref(),
+        },
+    })
+}
+
+fn node(place: &Place) -> Option<&str> {
+    place.node.as_deref()
+}
+
+fn matrix(transform: &DAffine3) -> [f64; 16] {
+    DMat4::from(*transform).to_cols_array()
+}
+
+fn mesh(mesh: &MeshDesc) -> Value {
+    json!({
+        "name": &*mesh.name,
+        "place": node(&mesh.place),
+        "points": mesh.points,
+        "triangles": mesh.triangles,
+        "normals": mesh.normals.as_ref().map(attribute),
+        "uvs": mesh.uvs.iter().map(attribute).collect::<Vec<_>>(),
+        "colors": mesh.colors.as_ref().map(attribute),
+        "material_slots": mesh.material_slots,
+        "motion": mesh.motion.iter().map(|m| json!({ "time": m.time, "points": m.value })).collect::<Vec<_>>(),
+    })
+}
+
+fn attribute<T: serde::Serialize>(attribute: &Attribute<T>) -> Value {
+    match attribute {
+        Attribute::Point(values) => json!({ "per": "point", "values": values }),
+        Attribute::Corner(values) => json!({ "per": "corner", "values": values }),
+    }
+}
+
+fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
+    let material = |index: &Option<u32>| {
+        let material = &scene.materials[(*index)? as usize];
+        Some(json!({ "name": &*material.name, "place": node(&material.place) }))
+    };
+    json!({
+        "name": &*instance.name,
+        "place": node(&instance.place),
+        "mesh": instance.mesh,
+        "matrix": matrix(&instance.transform),
+        "motion": instance.motion.iter()
+            .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
+            .collect::<Vec<_>>(),
+        "materials": instance.materials.iter().map(material).collect::<Vec<_>>(),
+        "visibility": visibility(instance.visibility),
+        "links": links(&instance.links, scene),
+    })
+}
+
+fn visibility(visibility: Visibility) -> Value {
+    let Visibility { camera, diffuse, glossy, transmission, shadow } = visibility;
+    json!({ "camera": camera, "diffuse": diffuse, "glossy": glossy, "transmission": transmission, "shadow": shadow })
+}
+
+fn links(links: &LightLinks, scene: &SceneDesc) -> Value {
+    let set = |set: &LinkSet| {
+        let places = set.instances.iter().map(|&i| node(&scene.instances[i as usize].place));
+        json!({ if set.exclude { "exclude" } else { "include" }: places.collect::<Vec<_>>() })
+    };
+    json!({
+        "group": links.group.as_deref(),
+        "cast_shadow": links.cast_shadow,
+        "receivers": links.receivers.as_ref().map(set),
+        "blockers": links.blockers.as_ref().map(set),
+    })
+}
+
+fn light(light: &LightDesc, scene: &SceneDesc) -> Value {
+    let shaping = &light.shaping;
+    let cone = |cone: ConeDesc| match cone {
+        ConeDesc::Ramp { inner, outer } => json!({ "kind": "ramp", "inner": inner, "outer": outer }),
+        ConeDesc::Blend { angle, blend } => json!({ "kind": "blend", "angle": angle, "blend": blend }),
+        ConeDesc::Soft { angle, softness } => json!({ "kind": "soft", "angle": angle, "softness": softness }),
+    };
+    let law = match light.decay.law {
+        DecayLaw::Constant => json!("constant"),
+        DecayLaw::Linear => json!("linear"),
+        DecayLaw::Quadratic => json!("quadratic"),
+        DecayLaw::Polynomial { kc, kl, kq } => json!([kc, kl, kq]),
+    };
+    let range = light.decay.range.is_finite().then_some(light.decay.range);
+    json!({
+        "name": &*light.name,
+        "place": node(&light.place),
+        "matrix": matrix(&light.transform),
+        "kind": kind(light.kind, scene),
+        "shaping": {
+            "cone": shaping.cone.map(cone),
+            "focus": shaping.focus,
+            "focus_tint": shaping.focus_tint,
+            "ies": shaping.ies.map(|ies| json!({
+                "profile": &*scene.ies[ies.profile as usize].name,
+                "angle_scale": ies.angle_scale,
+                "keep_power": ies.keep_power,
+            })),
+        },
+        "decay": { "law": law, "smooth": light.decay.smooth, "range": range },
+        "visibility": visibility(light.visibility),
+        "links": links(&light.links, scene),
+    })
+}
+
+fn kind(kind: LightKind, scene: &SceneDesc) -> Value {
+    let image = |image: Option<u32>| image.map(|i| scene.images[i as usize].name.to_string());
+    match kind {
+        LightKind::Point { intensity } => json!({ "kind": "point", "intensity": intensity }),
+        LightKind::Sphere { radius, radiance, facing } => {
+            json!({ "kind": "sphere", "radius": radius, "radiance": radiance, "facing": facing })
+        }
+        LightKind::Rect { width, height, radiance, spread, two_sided, image: texture } => json!({
+            "kind": "rect", "width": width, "height": height, "radiance": radiance, "spread": spread,
+            "two_sided": two_sided, "image": image(texture),
+        }),
+        LightKind::Disk { width, height, radiance, spread, two_sided } => json!({
+            "kind": "disk", "width": width, "height": height, "radiance": radiance, "spread": spread,
+            "two_sided": two_sided,
+        }),
+        LightKind::Cylinder { radius, length, radiance } => {
+            json!({ "kind": "cylinder", "radius": radius, "length": length, "radiance": radiance })
+        }
+        LightKind::Distant { irradiance, angle } => {
+            json!({ "kind": "distant", "irradiance": irradiance, "angle": angle })
+        }
+        LightKind::Dome { radiance, image: texture } => {
+            json!({ "kind": "dome", "radiance": radiance, "image": image(texture) })
+        }
+    }
+}
+
+fn camera(camera: &CameraDesc) -> Value {
+    let projection = match camera.projection {
+        ProjectionDesc::Perspective { fov_y, aspect } => {
+            json!({ "kind": "perspective", "fov_y": fov_y, "aspect": aspect })
+        }
+        ProjectionDesc::Orthographic { half_width, half_height } => {
+            json!({ "kind": "orthographic", "half_width": half_width, "half_height": half_height })
+        }
+    };
+    json!({
+        "name": &*camera.name,
+        "place": node(&camera.place),
+        "matrix": matrix(&camera.transform),
+        "motion": camera.motion.iter()
+            .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
+            .collect::<Vec<_>>(),
+        "projection": projection,
+        "clip_near": camera.clip_near,
+        "clip_far": camera.clip_far.is_finite().then_some(camera.clip_far),
+        "shift": camera.shift,
+        "lens": camera.lens.map(|lens| json!({
+            "aperture_radius": lens.aperture_radius, "focus_distance": lens.focus_distance,
+        })),
+        "shutter": camera.shutter,
+        "exposure": camera.exposure,
+    })
+}
