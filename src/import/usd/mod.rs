@@ -8,15 +8,23 @@
 //!                                    └─► lights, cameras, render settings
 //! ```
 
+mod bindings;
 mod camera;
+mod diagnostics;
 mod images;
+mod inherit;
+mod instancer;
 mod light;
 mod material;
 mod render;
 mod scene;
 mod shape;
+mod shapes;
 mod stage;
+mod units;
+mod variants;
 mod walk;
+mod xform;
 
 use std::path::Path;
 
