@@ -46,7 +46,7 @@ pub fn run() -> ExitCode {
 fn command() -> Command {
     Command::new("penumbra")
         .version(env!("CARGO_PKG_VERSION"))
-        .about("Renders glTF scenes to multi-layer EXR, with shadow and ambient occlusion passes")
+        .about("Renders USD and glTF scenes to multi-layer EXR, with shadow and ambient occlusion passes")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(render::command())
@@ -62,9 +62,9 @@ mod scene {
     use super::ArgMatches;
     use penumbra::desc::SceneDesc;
     use penumbra::error::{Result, Warnings};
-    use penumbra::import::{self, ImportOptions, LightUnits};
+    use penumbra::import::{self, ImportOptions, LightUnits, Purpose};
 
-    pub fn args() -> [Arg; 3] {
+    pub fn args() -> [Arg; 5] {
         [
             Arg::new("scene")
                 .value_name("SCENE")
@@ -82,7 +82,33 @@ mod scene {
                 .value_parser(["spec", "compat", "raw"])
                 .default_value("spec")
                 .help("How lamps of a glTF file are meant: candela and lux, or as Blender's exporter modes"),
+            Arg::new("purpose")
+                .long("purpose")
+                .value_name("LIST")
+                .value_delimiter(',')
+                .value_parser(["render", "proxy", "guide"])
+                .default_value("render")
+                .help("Purposes of USD prims to show beside those without one, as render,guide"),
+            Arg::new("subdivision")
+                .long("subdivision")
+                .value_name("N")
+                .value_parser(value_parser!(u32).range(0..=MOST_SUBDIVISION))
+                .help(format!(
+                    "How often USD's subdivision surfaces are refined [default: {}]",
+                    ImportOptions::default().subdivision
+                )),
         ]
+    }
+
+    /// Each level has four times the faces of that before.
+    const MOST_SUBDIVISION: i64 = 8;
+
+    fn purpose(name: &str) -> Purpose {
+        match name {
+            "proxy" => Purpose::Proxy,
+            "guide" => Purpose::Guide,
+            _ => Purpose::Render,
+        }
     }
 
     /// A frame is a finite number.
@@ -102,11 +128,14 @@ mod scene {
             Some("raw") => LightUnits::Raw,
             _ => LightUnits::Spec,
         };
+        let default = ImportOptions::default();
         let options = ImportOptions {
             frame,
             variants: args.get_many("variant").into_iter().flatten().cloned().collect(),
             light_units,
-            ..ImportOptions::default()
+            purposes: args.get_many::<String>("purpose").into_iter().flatten().map(|name| purpose(name)).collect(),
+            subdivision: args.get_one("subdivision").copied().unwrap_or(default.subdivision),
+            ..default
         };
         let mut warnings = Warnings::new();
         let scene = import::scene(path(args), &options, &mut warnings)?;

@@ -6,6 +6,7 @@ use std::time::SystemTime;
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use penumbra::desc::{CameraDesc, SceneDesc};
 use penumbra::error::Warnings;
 use penumbra::film::SampleId;
 use penumbra::output::{Metadata, exr, png};
@@ -33,14 +34,12 @@ pub fn command() -> Command {
             Arg::new("camera")
                 .long("camera")
                 .value_name("NAME|PATH")
-                .help("Camera to look through; the first unless set"),
+                .help("Camera to look through; that of the file's own render settings or the first unless set"),
         )
         .arg(
-            Arg::new("size")
-                .long("size")
-                .value_name("WxH")
-                .value_parser(parse_size)
-                .help("Size of the picture in pixels; 960 across and the camera's own aspect unless set"),
+            Arg::new("size").long("size").value_name("WxH").value_parser(parse_size).help(
+                "Size of the picture in pixels; that of the file's own render settings, or 960 across, unless set",
+            ),
         )
         .arg(
             Arg::new("frame")
@@ -48,7 +47,7 @@ pub fn command() -> Command {
                 .value_name("F")
                 .value_parser(scene::parse_frame)
                 .allow_negative_numbers(true)
-                .help("Evaluate animation at this frame, 24 per second; the file's pose at rest unless set"),
+                .help("Frame (USD: time code; glTF: 24 per second); USD's first, or glTF's pose at rest, unless set"),
         )
         .arg(
             Arg::new("frames")
@@ -133,7 +132,8 @@ fn render_frame(
     let files = if sample.is_none() { Some(Files::of(args, frame)?) } else { None };
     let (mut desc, mut warnings) = scene::load(args, frame)?;
     environment::apply(args, &mut desc)?;
-    let view = View { camera: args.get_one("camera").cloned(), size: args.get_one("size").copied() };
+    let view = view(args, &desc, &mut warnings);
+    let settings = &with_own_passes(args, settings, &desc, &mut warnings);
     let prepared = prepare(desc, &view, settings)?;
     warnings.extend(prepared.warnings.clone());
     tell(&warnings, told);
@@ -199,6 +199,35 @@ fn render_frame(
     let [width, height] = scene.size;
     say::err(format!("{}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", out.display(), prepared.camera));
     Ok(Outcome::Done)
+}
+
+/// Camera and size: what was typed, or what the file asks for.
+fn view(args: &ArgMatches, desc: &SceneDesc, warnings: &mut Warnings) -> View {
+    let own = &desc.render;
+    let camera = args.get_one::<String>("camera").cloned().or_else(|| {
+        let name = own.camera.as_deref()?;
+        let is_it = |c: &CameraDesc| *c.name == *name || c.place.node.as_deref() == Some(name);
+        if !desc.cameras.iter().any(is_it) {
+            warnings.push(&desc.place, format!("asks for the camera {name}, which does not exist; another is taken"));
+            return None;
+        }
+        Some(name.to_owned())
+    });
+    View { camera, size: args.get_one("size").copied().or(own.resolution) }
+}
+
+/// `settings` with the passes that the file asks for, where none were typed.
+fn with_own_passes(args: &ArgMatches, settings: &Settings, desc: &SceneDesc, warnings: &mut Warnings) -> Settings {
+    let mut settings = settings.clone();
+    let own = desc.render.passes.join(",");
+    if own.is_empty() || args.value_source("passes") == Some(ValueSource::CommandLine) {
+        return settings;
+    }
+    let passes = SETTINGS.iter().find(|def| def.name == "passes");
+    if let Some(Err(what)) = passes.map(|def| def.set(&mut settings, &own)) {
+        warnings.push(&desc.place, format!("asks for passes that can't be rendered: {what}; left out"));
+    }
+    settings
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.

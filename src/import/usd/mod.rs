@@ -8,17 +8,25 @@
 //!                                    └─► lights, cameras, render settings
 //! ```
 
+mod bindings;
 mod camera;
+mod diagnostics;
 mod images;
+mod inherit;
+mod instancer;
 mod light;
 mod material;
 mod render;
 mod scene;
 mod shape;
+mod shapes;
 mod stage;
 mod udim;
+mod units;
 mod values;
+mod variants;
 mod walk;
+mod xform;
 
 use std::path::Path;
 

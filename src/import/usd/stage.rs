@@ -1,20 +1,25 @@
 //! A stage that is being read: what every part of the door asks.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::Path;
 
 use openusd::sdf::{self, FromValue};
-use openusd::usd::{Prim, Stage, TimeCode};
+use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
+use super::units::Units;
+use super::{diagnostics, variants};
 use crate::error::{Error, Place, Result, Warnings};
-use crate::math::{DAffine3, DMat3, DVec3};
+use crate::math::DAffine3;
 
 /// A composed stage, the time at which it is read, and how its space lies in ours.
 pub(super) struct Reading<'a> {
     pub stage: Stage,
     /// When values are read; `EARLIEST` where neither the user nor the stage names a frame.
     pub time: TimeCode,
+    /// Time codes after `time` between which the shutters of the cameras are open; `None` where none is
+    /// open for longer than an instant. Known once the prims were walked.
+    pub shutter: Cell<Option<[f64; 2]>>,
     /// The root layer.
     pub place: Place,
     pub options: &'a ImportOptions,
@@ -33,27 +38,33 @@ impl<'a> Reading<'a> {
     /// Opens the stage whose root layer is `path`.
     ///
     /// # Errors
-    /// A root layer that is missing or broken, a frame or variant that makes no sense.
+    /// A root layer that is missing or broken, a variant that does not exist.
     pub fn open(path: &Path, options: &'a ImportOptions) -> Result<Self> {
         let place = Place::file(path);
         if let Err(source) = std::fs::metadata(path) {
             return Err(Error::io(path, "can't read", source));
         }
         let opened = Stage::builder().schema_registry(openusd_schemas::schema_registry()).open(&path.to_string_lossy());
-        let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {e}")))?;
-        let time = match options.frame {
-            Some(frame) => TimeCode::new(frame),
-            None if stage.has_authored_time_code_range() => TimeCode::new(stage.start_time_code()),
-            None => TimeCode::EARLIEST,
-        };
-        let meters = number(&stage, "metersPerUnit").filter(|m| m.is_finite() && *m > 0.0).unwrap_or(0.01);
-        let z_up = token(&stage, "upAxis").is_some_and(|axis| axis == "Z");
-        // z up to y up: (x, y, z) is (x, z, −y).
-        let turn = if z_up { DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y) } else { DMat3::IDENTITY };
-        let to_world = DAffine3::from_mat3(turn * DMat3::from_diagonal(DVec3::splat(meters)));
-        let blender = token(&stage, "documentation").is_some_and(|doc| doc.starts_with("Blender"));
-        let warnings = RefCell::new(Warnings::new());
-        Ok(Self { stage, time, place, options, meters, to_world, blender, warnings })
+        let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
+        variants::select(&stage, &options.variants, &place)?;
+        let mut warnings = Warnings::new();
+        let time = time(&stage, options.frame, &place, &mut warnings);
+        let units = Units::of_root(&stage, &place, &mut warnings);
+        let root = sdf::Path::abs_root();
+        // What the metadata that files call `doc` is named in memory.
+        let doc = stage.field::<sdf::Value>(&root, "documentation").ok().flatten();
+        let blender = matches!(doc, Some(sdf::Value::String(text)) if text.starts_with("Blender v"));
+        Ok(Self {
+            stage,
+            time,
+            shutter: Cell::new(None),
+            place,
+            options,
+            meters: units.meters,
+            to_world: units.to_world(),
+            blender,
+            warnings: RefCell::new(warnings),
+        })
     }
 
     /// The place of the prim or property at `path`.
@@ -66,6 +77,11 @@ impl<'a> Reading<'a> {
         self.warnings.borrow_mut().push(&self.place_of(path), what);
     }
 
+    /// Tells of what could not be composed, which is known once everything was read.
+    pub fn warn_of_composition(&self) {
+        diagnostics::tell(self);
+    }
+
     /// The value of attribute `name` of `prim` at the time that is read, authored or the schema's
     /// fallback. `None` where there is none; a value of another type is told of.
     pub fn value<T>(&self, prim: &Prim, name: &str) -> Option<T>
@@ -73,29 +89,66 @@ impl<'a> Reading<'a> {
         T: FromValue,
         T::Error: Into<openusd::Error>,
     {
-        let attribute = prim.attribute(name);
-        match attribute.get_at::<T>(self.time) {
-            Ok(value) => value,
+        self.value_of(&prim.attribute(name), self.time)
+    }
+
+    /// The value of `attribute` at `time`; as [`value`](Self::value).
+    pub fn value_of<T>(&self, attribute: &Attribute, time: TimeCode) -> Option<T>
+    where
+        T: FromValue,
+        T::Error: Into<openusd::Error>,
+    {
+        match attribute.get_at::<T>(time) {
+            Ok(Some(value)) => Some(value),
+            Ok(None) => self.held(attribute, time),
             Err(error) => {
                 self.warn(attribute.path(), format!("{error}; taken for not authored"));
                 None
             }
         }
     }
-}
 
-fn number(stage: &Stage, key: &str) -> Option<f64> {
-    match stage.stage_metadata(key).ok()?? {
-        sdf::Value::Double(value) => Some(value),
-        sdf::Value::Float(value) => Some(f64::from(value)),
-        _ => None,
+    /// The sample before `time` where a block follows it: OpenUSD holds that value up to the block, the
+    /// openusd crate does not.
+    fn held<T>(&self, attribute: &Attribute, time: TimeCode) -> Option<T>
+    where
+        T: FromValue,
+        T::Error: Into<openusd::Error>,
+    {
+        if let Ok(Some((before, after))) = attribute.bracketing_time_samples(time) {
+            return if before < after { attribute.get_at::<T>(TimeCode::new(before)).ok().flatten() } else { None };
+        }
+        if matches!(attribute.has_authored_metadata("spline"), Ok(true)) {
+            self.warn(attribute.path(), "is animated by a spline, which can't be evaluated; taken for not authored");
+        }
+        None
     }
 }
 
-fn token(stage: &Stage, key: &str) -> Option<String> {
-    match stage.stage_metadata(key).ok()?? {
-        sdf::Value::Token(value) => Some(value.to_string()),
-        sdf::Value::String(value) => Some(value),
-        _ => None,
+/// The time code of `frame`, or that at which the stage starts.
+fn time(stage: &Stage, frame: Option<f64>, place: &Place, warnings: &mut Warnings) -> TimeCode {
+    if !stage.has_authored_time_code_range() {
+        return frame.map_or(TimeCode::EARLIEST, TimeCode::new);
     }
+    let (start, end) = (stage.start_time_code(), stage.end_time_code());
+    let Some(frame) = frame else { return TimeCode::new(start) };
+    if frame < start || frame > end {
+        let what = format!("frame {frame} is outside of the stage's time codes {start} to {end}; the nearest are held");
+        warnings.push(place, what);
+    }
+    TimeCode::new(frame)
+}
+
+/// `error` with its causes.
+pub(super) fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let more = error.to_string();
+        if !text.contains(&more) {
+            text = format!("{text}: {more}");
+        }
+        cause = error.source();
+    }
+    text
 }

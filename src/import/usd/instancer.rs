@@ -1,0 +1,254 @@
+//! Point instancers: prototypes that stand wherever an array says (UsdGeomPointInstancer).
+
+use std::collections::HashSet;
+use std::rc::Rc;
+
+use openusd::gf::{Quatf, Quath, Vec3f};
+use openusd::sdf;
+use openusd::usd::{Prim, TimeCode};
+
+use super::inherit::{Context, Mover, Pose};
+use super::stage::Reading;
+use super::walk::{Shown, Walk};
+use crate::math::{DAffine3, DMat3, DQuat, DVec3};
+
+/// What places the instances, beside their velocities.
+const PLACES: [&str; 4] = ["positions", "orientations", "orientationsf", "scales"];
+
+/// Adds the instances of the instancer `prim`, whose children take `context` from it.
+pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, shown: &mut Vec<Shown>) {
+    let reading = walk.reading;
+    let indices: Vec<i32> = reading.value(prim, "protoIndices").unwrap_or_default();
+    let count = indices.len();
+    if count == 0 {
+        return;
+    }
+    let prototypes = prototypes(walk, prim, context);
+    let Some(places) = transforms(reading, prim, count, reading.time) else {
+        let what = format!("has {count} protoIndices but another number of positions; its instances are left out");
+        return reading.warn(prim.path(), what);
+    };
+    let motion = motion(walk, prim, count);
+    let mask = mask(reading, prim, count);
+    let mut lost = 0;
+    for (i, index) in indices.into_iter().enumerate() {
+        if !mask.as_ref().is_none_or(|mask| mask[i]) || walk.full() {
+            continue;
+        }
+        let Some(prototype) = usize::try_from(index).ok().and_then(|index| prototypes.get(index)) else {
+            lost += 1;
+            continue;
+        };
+        let moved = motion.as_ref().map(|at| at.iter().map(|places| places[i]).collect());
+        let place = context.pose.place(&Pose { motion: moved, ..Pose::still(places[i]) });
+        for inner in prototype.iter() {
+            let pose = place.place(&inner.pose);
+            let asset = inner.asset.clone().or_else(|| context.asset.clone());
+            walk.show(Shown { pose, asset, ..inner.clone() }, shown);
+        }
+    }
+    if lost > 0 {
+        let what = format!("{lost} protoIndices are not those of one of its {} prototypes; left out", prototypes.len());
+        reading.warn(prim.path(), what);
+    }
+}
+
+/// What each of the prototypes shows, where its root stands as if alone.
+fn prototypes(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context) -> Vec<Rc<Vec<Shown>>> {
+    let reading = walk.reading;
+    let targets = prim.relationship("prototypes").forwarded_targets().unwrap_or_default();
+    let of = |path: sdf::Path| match walk.pointed.get(&path) {
+        Some(Some(known)) => known.clone(),
+        Some(None) => {
+            reading.warn(prim.path(), format!("is within its own prototype {path}; that is left out"));
+            Rc::default()
+        }
+        None => {
+            walk.pointed.insert(path.clone(), None);
+            let found = Rc::new(prototype(walk, prim, context, &path));
+            walk.pointed.insert(path, Some(found.clone()));
+            found
+        }
+    };
+    targets.into_iter().map(of).collect()
+}
+
+fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path: &sdf::Path) -> Vec<Shown> {
+    let reading = walk.reading;
+    let Some(root) = reading.stage.prim(path).ok().filter(|root| root.is_valid().unwrap_or(false)) else {
+        reading.warn(instancer.path(), format!("its prototype {path} does not exist; that is left out"));
+        return Vec::new();
+    };
+    if instancer.path().has_prefix(path) {
+        reading.warn(instancer.path(), format!("is within its own prototype {path}; that is left out"));
+        return Vec::new();
+    }
+    // What it takes from its ancestors, save where they stand.
+    let inside = path.has_prefix(instancer.path());
+    let above = |ancestor: &sdf::Path| !inside || ancestor != instancer.path() && ancestor.has_prefix(instancer.path());
+    let mut ancestors: Vec<sdf::Path> = path.strict_ancestors_below_root().filter(above).collect();
+    ancestors.reverse();
+    let mut within = if inside { context.clone() } else { Context::root(Pose::still(DAffine3::IDENTITY)) };
+    if inside {
+        let names = instancer.authored_property_names().unwrap_or_default();
+        within.hand_down_primvars(reading, instancer, &names);
+    }
+    for ancestor in ancestors.iter().filter_map(|path| reading.stage.prim(path).ok()) {
+        let names = ancestor.authored_property_names().unwrap_or_default();
+        within = within.enter(&mut walk.clock, &ancestor, true, &names);
+        within.hand_down_primvars(reading, &ancestor, &names);
+    }
+    within.pose = Pose::still(DAffine3::IDENTITY);
+    within.asset = None;
+    within.group = false;
+    within.purpose = within.purpose.or(context.purpose);
+    let mut shown = Vec::new();
+    if let Some(inner) = walk.enter(&root, &within, true, &mut shown) {
+        walk.below(&root, inner, true, &mut shown);
+    }
+    walk.forget(shown.len());
+    if !inside {
+        // The instancer is what the user sees.
+        let name = path.name().unwrap_or_default();
+        let seen = instancer.path().append_path(name).unwrap_or_else(|_| instancer.path().clone());
+        for one in &mut shown {
+            one.path = one.path.replace_prefix(path, &seen).unwrap_or_else(|| one.path.clone());
+        }
+    }
+    shown
+}
+
+/// The transforms of all instances at each time of the shutter, if they move.
+fn motion(walk: &mut Walk<'_, '_>, prim: &Prim, count: usize) -> Option<Vec<Vec<DAffine3>>> {
+    let reading = walk.reading;
+    let attributes = || PLACES.map(|name| prim.attribute(name)).to_vec();
+    let has = |name| reading.value::<Vec<Vec3f>>(prim, name).is_some_and(|values| !values.is_empty());
+    let flows = || has("velocities") || has("angularVelocities");
+    walk.clock.note(|| Mover::Instances(attributes(), flows()));
+    let varies = || attributes().iter().any(|a| a.value_might_be_time_varying().unwrap_or(false));
+    if walk.clock.times.is_empty() || !(varies() || flows()) {
+        return None;
+    }
+    let frame = reading.time.value();
+    walk.clock.times.iter().map(|time| transforms(reading, prim, count, TimeCode::new(frame + time))).collect()
+}
+
+/// Where the instances stand within the instancer at `time`, as UsdGeomPointInstancer's
+/// ComputeInstanceTransformsAtTime does without the prototypes' own transforms. `None` where their number
+/// is another than `count`.
+fn transforms(reading: &Reading<'_>, prim: &Prim, count: usize, time: TimeCode) -> Option<Vec<DAffine3>> {
+    let vectors = |name: &str, at| reading.value_of::<Vec<Vec3f>>(&prim.attribute(name), at).filter(|v| !v.is_empty());
+    let fits = |len: usize, name: &str| {
+        if len != count {
+            reading.warn(prim.path(), format!("has {len} {name} for {count} instances; they are left out"));
+        }
+        len == count
+    };
+    let flow = Flow::of(reading, prim, "positions", "velocities", count, time);
+    let positions = vectors("positions", flow.as_ref().map_or(time, |flow| flow.from)).filter(|p| p.len() == count)?;
+    let accelerations = flow.as_ref().and_then(|flow| vectors("accelerations", flow.from)).filter(|a| a.len() == count);
+    let spin = ["orientationsf", "orientations"].into_iter().find_map(|name| {
+        let flow = Flow::of(reading, prim, name, "angularVelocities", count, time);
+        let at = flow.as_ref().map_or(time, |flow| flow.from);
+        let turns = turns(reading, prim, name, at)?;
+        Some((turns, flow, name))
+    });
+    let spin = spin.filter(|(turns, _, name)| fits(turns.len(), name));
+    let scales = vectors("scales", time).filter(|scales| fits(scales.len(), "scales"));
+    let place = |i: usize| {
+        let mut position = vector(positions[i]);
+        if let Some(flow) = &flow {
+            let gained = accelerations.as_ref().map_or(DVec3::ZERO, |a| 0.5 * flow.seconds * vector(a[i]));
+            position += flow.seconds * (vector(flow.rates[i]) + gained);
+        }
+        let turn = spin.as_ref().map_or(DMat3::IDENTITY, |(turns, flow, _)| match flow {
+            Some(flow) => {
+                let angles = flow.seconds * DEGREE * vector(flow.rates[i]);
+                DMat3::from_quat(DQuat::from_scaled_axis(angles)) * turns[i]
+            }
+            None => turns[i],
+        });
+        let scale = scales.as_ref().map_or(DVec3::ONE, |scales| vector(scales[i]));
+        DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(scale), position)
+    };
+    Some((0..count).map(place).collect())
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// How an array changes from its last sample on.
+struct Flow {
+    /// Time of that sample.
+    from: TimeCode,
+    /// Seconds since then.
+    seconds: f64,
+    /// Change per second.
+    rates: Vec<Vec3f>,
+}
+
+impl Flow {
+    /// That of `array` by the velocities `rates`, which count where both have a sample at the same time.
+    fn of(reading: &Reading<'_>, prim: &Prim, array: &str, rates: &str, count: usize, time: TimeCode) -> Option<Self> {
+        let before = |name: &str| prim.attribute(name).bracketing_time_samples(time).ok().flatten().map(|(t, _)| t);
+        let from = before(rates)?;
+        if before(array) != Some(from) {
+            return None;
+        }
+        let rates: Vec<Vec3f> = reading.value_of(&prim.attribute(rates), TimeCode::new(from))?;
+        if rates.len() != count {
+            return None;
+        }
+        let seconds = (time.value() - from) / reading.stage.time_codes_per_second();
+        seconds.is_finite().then_some(Self { from: TimeCode::new(from), seconds, rates })
+    }
+}
+
+/// The orientations `name`, of half or single precision, as matrices.
+fn turns(reading: &Reading<'_>, prim: &Prim, name: &str, time: TimeCode) -> Option<Vec<DMat3>> {
+    let attribute = prim.attribute(name);
+    let turns: Vec<DMat3> = if name == "orientations" {
+        let halves: Vec<Quath> = reading.value_of(&attribute, time)?;
+        halves.into_iter().map(|q| turn([q.x, q.y, q.z, q.w].map(|c| c.to_f64()))).collect()
+    } else {
+        let singles: Vec<Quatf> = reading.value_of(&attribute, time)?;
+        singles.into_iter().map(|q| turn([q.x, q.y, q.z, q.w].map(f64::from))).collect()
+    };
+    (!turns.is_empty()).then_some(turns)
+}
+
+/// The matrix of a quaternion as it is: like OpenUSD, without making it a unit one first, which those of
+/// half precision never quite are.
+fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
+    DMat3::from_cols(
+        DVec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (z * x - y * w)),
+        DVec3::new(2.0 * (x * y - z * w), 1.0 - 2.0 * (z * z + x * x), 2.0 * (y * z + x * w)),
+        DVec3::new(2.0 * (z * x + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (y * y + x * x)),
+    )
+}
+
+/// Which instances are seen; `None` for all.
+fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
+    let mut off: HashSet<i64> =
+        reading.value::<Vec<i64>>(prim, "invisibleIds").unwrap_or_default().into_iter().collect();
+    match prim.get_metadata::<sdf::Value>("inactiveIds") {
+        Ok(Some(sdf::Value::Int64ListOp(inactive))) => off.extend(inactive.flatten()),
+        Ok(Some(sdf::Value::Int64Vec(inactive))) => off.extend(inactive),
+        _ => {}
+    }
+    if off.is_empty() {
+        return None;
+    }
+    let ids: Option<Vec<i64>> = reading.value(prim, "ids").filter(|ids: &Vec<i64>| !ids.is_empty());
+    let ids = ids.filter(|ids| {
+        if ids.len() != count {
+            reading.warn(prim.path(), format!("has {} ids for {count} instances; they are left out", ids.len()));
+        }
+        ids.len() == count
+    });
+    let seen = |i: usize| !off.contains(&ids.as_ref().map_or(i as i64, |ids| ids[i]));
+    Some((0..count).map(seen).collect())
+}
+
+fn vector(v: Vec3f) -> DVec3 {
+    DVec3::new(v.x.into(), v.y.into(), v.z.into())
+}

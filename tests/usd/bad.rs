@@ -1,0 +1,55 @@
+//! Bad input: what is broken is told, with its layer and prim; the rest of the stage is there.
+
+use std::path::Path;
+
+use penumbra::import::ImportOptions;
+
+use super::{load, stage, try_load};
+
+#[test]
+fn what_is_broken_is_told_and_the_rest_is_shown() {
+    let loaded = load("bad.usda", &ImportOptions::default());
+    let told = [
+        "bad.usda: the sublayer @./no_sublayer.usda@ is not found; it is left out",
+        "bad.usda: upAxis is 'X', which is neither Y nor Z; taken for Y",
+        "bad.usda, /World/MissingReference: the referenced layer",
+        "bad.usda, /World/MissingPayload: the payload layer",
+        "bad.usda, /World/Broken: the referenced layer",
+        "bad.usda, /World/NoPrim: the referenced layer",
+        "bad.usda, /World/Cycle/Inner: is composed of itself",
+        "bad.usda, /World/FromTheFuture: type 'Mesh_9' is of no schema that is known here",
+        "bad.usda, /World/Nan: its transform is singular or not finite; it is left out",
+        "centimetres.usda: metersPerUnit is 0.01, that of the stage 1;",
+        "centimetres.usda: upAxis is Z, that of the stage Y;",
+        "bad.usda, /World/Sound: purpose 'ornament' is not known; taken for default",
+        "bad.usda, /World/Points: 2 protoIndices are not those of one of its 3 prototypes; left out",
+        "bad.usda, /World/Points: its prototype /World/Points/Gone does not exist; that is left out",
+        "bad.usda, /World/Points: is within its own prototype /World; that is left out",
+        "bad.usda, /World/Points: has 1 scales for 5 instances; they are left out",
+        "bad.usda, /World/Points: has 2 ids for 5 instances; they are left out",
+        "bad.usda, /World/TooFew: has 2 protoIndices but another number of positions; its instances are left out",
+    ];
+    for what in told {
+        loaded.said_of(what);
+    }
+    assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
+    assert_eq!(loaded.paths(), ["/World/Centimetres/T", "/World/Sound", "/World/Points/Proto"]);
+    // Units of a referenced layer are not converted, as in OpenUSD.
+    assert_eq!(loaded.origin("/World/Centimetres/T"), [0.0, 0.0, 100.0]);
+}
+
+#[test]
+fn a_root_layer_that_can_t_be_read_is_an_error_that_names_it() {
+    let error = |path: &Path| match try_load(path, &ImportOptions::default()) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("{} is read", path.display()),
+    };
+    assert!(error(&stage("no_such.usda")).contains("no_such.usda: can't read"));
+    assert!(error(&stage("broken.usdc")).contains("broken.usdc: can't be opened as USD"));
+    let dir = tempfile::tempdir().unwrap();
+    let cut = dir.path().join("cut.usda");
+    std::fs::write(&cut, "#usda 1.0\ndef Xform \"World\" {").unwrap();
+    assert!(error(&cut).contains("cut.usda: can't be opened as USD"), "{}", error(&cut));
+    std::fs::write(dir.path().join("not.usdz"), "PK").unwrap();
+    assert!(error(&dir.path().join("not.usdz")).contains("not.usdz: can't be opened as USD"));
+}
