@@ -4,6 +4,8 @@ mod exr_image;
 pub mod gltf;
 pub mod ies;
 pub mod image;
+mod subdivision;
+mod tangents;
 pub mod usd;
 
 use std::path::Path;

@@ -6,10 +6,10 @@ use super::clean::{clean, compact};
 use super::deform::{self, Influences, SkinPose};
 use super::document::label;
 use super::json::Primitive;
-use super::tangents;
 use super::topology;
 use crate::desc::{Attribute, MeshDesc};
 use crate::error::{Error, Place, Result, Warnings};
+use crate::import::tangents;
 
 /// What a primitive is to become.
 pub(super) struct Job<'a> {
@@ -72,19 +72,21 @@ pub(super) fn build(
         return Ok(None);
     }
     compact(&mut geometry);
-    let tangents = job.tangent_uv_set.and_then(|set| finish_tangents(&mut geometry, set as usize, &place, warnings));
-    Ok(Some(MeshDesc {
+    let authored = geometry.tangents;
+    let mut desc = MeshDesc {
         name: name.into(),
         place,
         points: geometry.points,
         triangles: geometry.triangles,
         normals: geometry.normals.map(Attribute::Point),
         uvs: geometry.uvs.into_iter().map(Attribute::Point).collect(),
-        tangents,
+        tangents: None,
         colors: geometry.colors.map(Attribute::Point),
         material_slots: None,
         motion: Vec::new(),
-    }))
+    };
+    desc.tangents = job.tangent_uv_set.and_then(|set| tangents_of(&desc, authored, set as usize, warnings));
+    Ok(Some(desc))
 }
 
 /// Reads the attributes. `None`, with a warning, for primitives without area.
@@ -206,24 +208,24 @@ fn skin(
 }
 
 /// The file's tangents, or new ones.
-fn finish_tangents(
-    geometry: &mut Geometry,
+fn tangents_of(
+    mesh: &MeshDesc,
+    authored: Option<Vec<[f32; 4]>>,
     uv_set: usize,
-    place: &Place,
     warnings: &mut Warnings,
 ) -> Option<Attribute<[f32; 4]>> {
     // Tangents mean nothing without the normals that they belong to (glTF 2.0, 3.7.2.1).
-    if let (Some(tangents), Some(_)) = (geometry.tangents.take(), &geometry.normals) {
+    if let (Some(tangents), Some(_)) = (authored, &mesh.normals) {
         return Some(Attribute::Point(tangents));
     }
-    let Some(uvs) = geometry.uvs.get(uv_set) else {
+    let Some(uvs) = mesh.uvs.get(uv_set) else {
         let what = format!("the material's normal map or anisotropy needs TEXCOORD_{uv_set}, which is absent");
-        warnings.push(place, what);
+        warnings.push(&mesh.place, what);
         return None;
     };
-    let tangents = tangents::generate(&geometry.points, geometry.normals.as_deref(), uvs, &geometry.triangles);
+    let tangents = tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles);
     if tangents.is_none() {
-        warnings.push(place, "no tangents can be made for the material's normal map or anisotropy");
+        warnings.push(&mesh.place, "no tangents can be made for the material's normal map or anisotropy");
     }
     tangents
 }

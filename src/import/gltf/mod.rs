@@ -31,7 +31,6 @@ mod meshopt;
 mod node;
 mod sampler;
 mod scene;
-mod tangents;
 mod texture;
 mod topology;
 mod uri;

@@ -1,5 +1,26 @@
 //! Gprims to triangles. Reading is done on one thread, since a stage is bound to its own; the work on
 //! what was read is done on all.
+//!
+//! ```text
+//! mesh ─► polygons ─► [subdivide] ─► triangulate ─► finish: attributes at points and corners
+//! curves, points, primitives ─────────────────────┘
+//! ```
+
+mod curves;
+mod finish;
+mod mesh;
+mod motion;
+mod points;
+mod polygons;
+mod primitive;
+mod primvar;
+mod profile;
+mod segments;
+mod subdivide;
+mod subsets;
+mod triangulate;
+mod tube;
+mod values;
 
 use std::sync::Arc;
 
@@ -13,9 +34,11 @@ use crate::error::{Place, Warnings};
 use crate::math::DAffine3;
 
 /// A gprim as authored.
-pub(super) struct Source {
-    points: Vec<[f32; 3]>,
-    subsets: Vec<sdf::Path>,
+pub(super) enum Source {
+    Mesh(Box<mesh::Mesh>),
+    Curves(Box<curves::Curves>),
+    Points(Box<points::Points>),
+    Primitive(Box<primitive::Primitive>),
 }
 
 /// What the materials of a shape need of it.
@@ -36,34 +59,58 @@ pub(super) struct Built {
     pub mesh: MeshDesc,
     /// Where copies of the mesh stand in object space (points); empty for one as it is.
     pub copies: Vec<DAffine3>,
+    /// False where its author wants back faces not to be seen.
+    pub double_sided: bool,
 }
 
 impl Source {
     /// Paths of the GeomSubsets that a material may be bound to.
     pub fn subsets(&self) -> &[sdf::Path] {
-        &self.subsets
+        match self {
+            Self::Mesh(mesh) => &mesh.subsets.paths,
+            _ => &[],
+        }
     }
 }
 
 /// Reads the gprim `prim`, which inherits `primvars`. `None` for a kind that is no shape, or one that is
 /// broken, which is told.
-pub(super) fn read(reading: &Reading<'_>, prim: &Prim, _primvars: &[Primvar]) -> Option<Source> {
-    let points = reading.value::<Vec<openusd::gf::Vec3f>>(prim, "points").unwrap_or_default();
-    let points = points.into_iter().map(|p| [p.x, p.y, p.z]).collect();
-    let subset = |p: &Prim| p.type_name().ok().flatten().is_some_and(|t| t.as_str() == "GeomSubset");
-    let subsets = prim.children().unwrap_or_default().iter().filter(|p| subset(p)).map(|p| p.path().clone()).collect();
-    Some(Source { points, subsets })
+pub(super) fn read(reading: &Reading<'_>, prim: &Prim, primvars: &[Primvar]) -> Option<Source> {
+    let kind = prim.type_name().ok()??;
+    match kind.as_str() {
+        "Mesh" => mesh::read(reading, prim, primvars, None).map(|mesh| Source::Mesh(Box::new(mesh))),
+        "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars).map(|mesh| Source::Mesh(Box::new(mesh))),
+        "BasisCurves" | "HermiteCurves" | "NurbsCurves" => {
+            curves::read(reading, prim, primvars, kind.as_str()).map(|curves| Source::Curves(Box::new(curves)))
+        }
+        "Points" => points::read(reading, prim, primvars).map(|points| Source::Points(Box::new(points))),
+        "NurbsPatch" => {
+            reading.warn(prim.path(), "NURBS patches are not supported; the patch is left out");
+            None
+        }
+        "Volume" => {
+            reading.warn(prim.path(), "volumes are not supported; the volume is left out");
+            None
+        }
+        kind => primitive::read(reading, prim, primvars, kind).map(|p| Source::Primitive(Box::new(p))),
+    }
 }
 
 /// Makes triangles of it; `None`, with a warning, where nothing is left.
 pub(super) fn build(
     source: Source,
-    _wants: &Wants,
-    _subdivision: u32,
+    wants: &Wants,
+    subdivision: u32,
     place: &Place,
-    _warnings: &mut Warnings,
+    warnings: &mut Warnings,
 ) -> Option<Built> {
-    let triangles = if source.points.len() >= 3 { vec![[0, 1, 2]] } else { Vec::new() };
-    let mesh = MeshDesc { points: source.points, triangles, place: place.clone(), ..MeshDesc::default() };
-    Some(Built { mesh, copies: Vec::new() })
+    match source {
+        Source::Mesh(mesh) => mesh.build(wants, subdivision, place, warnings),
+        Source::Curves(curves) => curves.build(wants, place, warnings),
+        Source::Points(points) => points.build(wants, place, warnings),
+        Source::Primitive(primitive) => primitive.build(wants, place, warnings),
+    }
 }
+
+#[cfg(test)]
+mod testing;

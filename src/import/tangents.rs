@@ -8,8 +8,8 @@ use crate::math::Vec3;
 
 struct Corners<'a> {
     points: &'a [[f32; 3]],
-    normals: Option<&'a [[f32; 3]]>,
-    uvs: &'a [[f32; 2]],
+    normals: Option<&'a Attribute<[f32; 3]>>,
+    uvs: &'a Attribute<[f32; 2]>,
     triangles: &'a [[u32; 3]],
     tangents: Vec<[f32; 4]>,
 }
@@ -17,6 +17,13 @@ struct Corners<'a> {
 impl Corners<'_> {
     fn point(&self, face: usize, corner: usize) -> Vec3 {
         self.points[self.triangles[face][corner] as usize].into()
+    }
+
+    fn value<T: Copy>(&self, values: &Attribute<T>, face: usize, corner: usize) -> T {
+        match values {
+            Attribute::Point(values) => values[self.triangles[face][corner] as usize],
+            Attribute::Corner(values) => values[3 * face + corner],
+        }
     }
 }
 
@@ -35,7 +42,7 @@ impl Geometry for Corners<'_> {
 
     fn normal(&self, face: usize, vert: usize) -> [f32; 3] {
         match self.normals {
-            Some(normals) => normals[self.triangles[face][vert] as usize],
+            Some(normals) => self.value(normals, face, vert),
             None => {
                 let p = self.point(face, 0);
                 (self.point(face, 1) - p).cross(self.point(face, 2) - p).normalize_or(Vec3::Z).into()
@@ -46,7 +53,7 @@ impl Geometry for Corners<'_> {
     /// MikkTSpace's bitangent points to growing v; a normal map's green to the image's top, where
     /// glTF's v is 0: hence 1 − v.
     fn tex_coord(&self, face: usize, vert: usize) -> [f32; 2] {
-        let [u, v] = self.uvs[self.triangles[face][vert] as usize];
+        let [u, v] = self.value(self.uvs, face, vert);
         [u, 1.0 - v]
     }
 
@@ -61,8 +68,8 @@ impl Geometry for Corners<'_> {
 /// beyond what the algorithm takes.
 pub(super) fn generate(
     points: &[[f32; 3]],
-    normals: Option<&[[f32; 3]]>,
-    uvs: &[[f32; 2]],
+    normals: Option<&Attribute<[f32; 3]>>,
+    uvs: &Attribute<[f32; 2]>,
     triangles: &[[u32; 3]],
 ) -> Option<Attribute<[f32; 4]>> {
     let tangents = vec![[1.0, 0.0, 0.0, 1.0]; 3 * triangles.len()];
@@ -80,7 +87,7 @@ mod tests {
     fn a_quad_seen_from_the_front_has_its_bitangent_up() {
         // The image's top left (uv 0 0) at the quad's top left: tangent +x, bitangent +y.
         let points = [[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
-        let uvs = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
+        let uvs = Attribute::Point(vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]);
         let triangles = [[0, 1, 2], [0, 2, 3]];
         let Some(Attribute::Corner(tangents)) = generate(&points, None, &uvs, &triangles) else { panic!() };
         for t in tangents {

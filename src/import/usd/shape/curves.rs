@@ -1,0 +1,229 @@
+//! UsdGeomBasisCurves, and Hermite and NURBS curves as such.
+
+use openusd::tf::Token;
+use openusd::usd::Prim;
+use openusd_schemas::geom::{Interpolation, Primvar};
+
+use super::super::stage::Reading;
+use super::finish::{Channels, Surface};
+use super::polygons::{Triangles, mend_points};
+use super::primvar::{self, Channel, Counts, Data, Primvars};
+use super::segments::{Basis, Curve, Wrap};
+use super::tube::{Joint, Tubes};
+use super::values::triples;
+use super::{Built, Wants, mesh, points};
+use crate::error::{Place, Warnings};
+use crate::math::Vec3;
+
+/// About how many points the tubes of a prim may have before they get fewer sides.
+const MOST_POINTS: usize = 4_000_000;
+
+/// Curves as authored.
+pub(in super::super) struct Curves {
+    points: Vec<[f32; 3]>,
+    counts: Vec<i32>,
+    basis: Basis,
+    wrap: Wrap,
+    widths: Option<Data<1>>,
+    primvars: Primvars,
+}
+
+/// Reads curves of schema `kind`; `None`, with a warning, where there are none.
+pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Curves> {
+    let mut points = mesh::points(reading, prim)?;
+    let mut counts: Vec<i32> = reading.value(prim, "curveVertexCounts").unwrap_or_default();
+    let token = |name: &str| reading.value::<Token>(prim, name);
+    let (mut basis, mut wrap) = (Basis::Linear, Wrap::Open);
+    match kind {
+        "BasisCurves" => {
+            let is_linear = token("type").is_some_and(|kind| kind == "linear");
+            basis = match token("basis").as_ref().map_or("bezier", Token::as_str) {
+                _ if is_linear => Basis::Linear,
+                "bspline" => Basis::Bspline,
+                "catmullRom" => Basis::CatmullRom,
+                "bezier" => Basis::Bezier,
+                other => {
+                    reading.warn(prim.path(), format!("there is no basis \"{other}\"; bezier is used"));
+                    Basis::Bezier
+                }
+            };
+            wrap = match token("wrap").as_ref().map_or("nonperiodic", Token::as_str) {
+                "periodic" => Wrap::Closed,
+                "pinned" => Wrap::Pinned,
+                _ => Wrap::Open,
+            };
+        }
+        "HermiteCurves" => {
+            let tangents = primvar::array(reading, &prim.attribute("tangents"), triples, Interpolation::Vertex);
+            match tangents.map(|data| data.values).filter(|tangents| tangents.len() == points.len()) {
+                Some(tangents) => {
+                    (points, counts) = as_bezier(&points, &tangents, &counts);
+                    basis = Basis::Bezier;
+                }
+                None => {
+                    reading.warn(prim.path(), "the curves need a tangent for each point; they are straight instead")
+                }
+            }
+        }
+        _ => reading.warn(prim.path(), "NURBS curves are drawn as straight lines between their points, as Hydra does"),
+    }
+    if counts.is_empty() {
+        reading.warn(prim.path(), "the curves have no curveVertexCounts; they are left out");
+        return None;
+    }
+    let mut primvars = primvar::read(reading, prim, inherited);
+    let widths = points::widths(reading, prim, &mut primvars);
+    if primvars.normals.is_none() {
+        primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
+    }
+    Some(Curves { points, counts, basis, wrap, widths, primvars })
+}
+
+/// Cubic pieces between points with tangents. Values of points go to those of the same curve at the ends of
+/// pieces.
+fn as_bezier(points: &[[f32; 3]], tangents: &[[f32; 3]], counts: &[i32]) -> (Vec<[f32; 3]>, Vec<i32>) {
+    let (mut bezier, mut bezier_counts) = (Vec::new(), Vec::new());
+    let mut start = 0;
+    for &count in counts {
+        let range = start..start + usize::try_from(count).unwrap_or(0);
+        start = range.end;
+        let (Some(p), Some(t)) = (points.get(range.clone()), tangents.get(range)) else { break };
+        let before = bezier.len();
+        for (i, (&point, &tangent)) in p.iter().zip(t).enumerate() {
+            let (point, third) = (Vec3::from(point), Vec3::from(tangent) / 3.0);
+            if i > 0 {
+                bezier.push((point - third).into());
+            }
+            bezier.push(point.into());
+            if i + 1 < p.len() {
+                bezier.push((point + third).into());
+            }
+        }
+        bezier_counts.push((bezier.len() - before) as i32);
+    }
+    (bezier, bezier_counts)
+}
+
+impl Curves {
+    pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
+        let Self { mut points, counts, basis, wrap, widths, primvars } = self;
+        let bad = mend_points(&mut points);
+        let curves = lay_out(&counts, points.len(), basis, wrap, place, warnings);
+        let joints = curves.last().map_or(0, |curve| curve.joints.end);
+        let sizes = Counts { faces: counts.len(), joints, points: points.len(), corners: joints };
+        let widths = widths.and_then(|data| data.fit(&sizes, place, warnings));
+        let mut channels = Channels::new(primvars, &sizes, wants, place, warnings);
+        let normals = channels.normals.take();
+        let mut lines: Vec<(usize, Vec<Joint>)> = Vec::with_capacity(curves.len());
+        let mut dropped = 0;
+        for (i, curve) in curves.iter().enumerate() {
+            if bad.as_ref().is_some_and(|bad| bad[curve.points.clone()].contains(&true)) {
+                dropped += 1;
+                continue;
+            }
+            lines.push((i, line(curve, i, &points, widths.as_ref(), normals.as_ref())));
+        }
+        if dropped > 0 {
+            warnings.push(place, format!("{dropped} curves have points that are not finite; they are left out"));
+        }
+        let rings: usize = lines.iter().map(|(_, joints)| joints.len()).sum();
+        let sides = (MOST_POINTS / rings.max(1)).clamp(4, 16) as u32;
+        let mut tubes = Tubes::default();
+        for (i, joints) in &lines {
+            tubes.push(*i as u32, joints, curves[*i].is_closed(), sides);
+        }
+        let Tubes { points, normals, triangles, origins } = tubes;
+        let along = Along { curves: &curves, origins: &origins };
+        let channels = Channels {
+            normals: Some(Channel { interpolation: Interpolation::Vertex, values: normals, indices: None }),
+            uvs: channels.uvs.into_iter().map(|(name, channel)| (name, along.channel(&channel))).collect(),
+            color: channels.color.map(|channel| along.channel(&channel)),
+            opacity: channels.opacity.map(|channel| along.channel(&channel)),
+        };
+        let triangles = Triangles { points: triangles, corners: None, faces: None };
+        let mesh =
+            Surface { points, triangles, channels, slots: None, motion: Vec::new() }.finish(wants, place, warnings)?;
+        Some(Built { mesh, copies: Vec::new(), double_sided: true })
+    }
+}
+
+/// Which points each curve has, and which varying values.
+fn lay_out(
+    counts: &[i32],
+    points: usize,
+    basis: Basis,
+    wrap: Wrap,
+    place: &Place,
+    warnings: &mut Warnings,
+) -> Vec<Curve> {
+    let mut curves = Vec::with_capacity(counts.len());
+    let (mut start, mut joints, mut short) = (0, 0, 0);
+    for (i, &count) in counts.iter().enumerate() {
+        let end = start + usize::try_from(count).unwrap_or(0);
+        if end > points {
+            let left = counts.len() - i;
+            warnings.push(place, format!("{left} curves need more points than there are; they are left out"));
+            break;
+        }
+        let curve = Curve::new(start..end, joints, basis, wrap);
+        short += u32::from(curve.segments() == 0);
+        (start, joints) = (end, curve.joints.end);
+        curves.push(curve);
+    }
+    if short > 0 {
+        warnings.push(place, format!("{short} curves have too few points for their basis; they are left out"));
+    }
+    curves
+}
+
+/// The joints of a curve: close enough where it bends.
+fn line(
+    curve: &Curve,
+    index: usize,
+    points: &[[f32; 3]],
+    widths: Option<&Channel<1>>,
+    normals: Option<&Channel<3>>,
+) -> Vec<Joint> {
+    let mut joints = Vec::new();
+    let width = |at| widths.map_or(1.0, |channel| curve.value(channel, index, at)[0]);
+    let facing = |at| normals.map(|channel| Vec3::from(curve.value(channel, index, at)));
+    let segments = curve.segments() as u32;
+    for segment in 0..segments {
+        let piece = curve.piece(segment as usize, |i| points[i]);
+        // Off by less than a tenth of the radius, and round at any width.
+        let radius = 0.5 * width((segment, 0.5)).abs();
+        let steps = piece.steps(0.1 * radius);
+        let last = segment + 1 == segments && !curve.is_closed();
+        for step in 0..steps + u32::from(last) {
+            let t = step as f32 / steps as f32;
+            let at = (segment, t);
+            let joint = Joint {
+                center: piece.at(t).into(),
+                tangent: piece.tangent(t).into(),
+                radius: 0.5 * width(at).max(0.0),
+                facing: facing(at),
+                at,
+            };
+            joints.push(joint);
+        }
+    }
+    curve.soften(&mut joints);
+    joints
+}
+
+/// Values at the points of tubes.
+struct Along<'a> {
+    curves: &'a [Curve],
+    origins: &'a [(u32, (u32, f32))],
+}
+
+impl Along<'_> {
+    fn channel<const N: usize>(&self, channel: &Channel<N>) -> Channel<N> {
+        let value = |&(curve, at): &(u32, (u32, f32))| self.curves[curve as usize].value(channel, curve as usize, at);
+        let values = self.origins.iter().map(value).collect();
+        Channel { interpolation: Interpolation::Vertex, values, indices: None }
+    }
+}
+
+#[cfg(test)]
+mod tests;

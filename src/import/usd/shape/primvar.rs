@@ -1,0 +1,187 @@
+//! Primvars: how values lie on a shape.
+
+use std::sync::Arc;
+
+use openusd::sdf::{Value, ValueKind};
+use openusd::tf::Token;
+use openusd::usd::{Attribute, Prim};
+use openusd_schemas::geom::{Interpolation, Primvar, PrimvarsAPI};
+
+use super::super::stage::Reading;
+use super::values::{pairs, scalars, triples};
+use crate::error::{Place, Warnings};
+
+/// Values as authored, not yet held against the shape.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Data<const N: usize> {
+    pub name: Arc<str>,
+    pub interpolation: Interpolation,
+    pub values: Vec<[f32; N]>,
+    /// Which element each place has; `None` for one after the other.
+    pub indices: Option<Vec<i32>>,
+    /// Values for each element, of which the first counts.
+    pub stride: usize,
+}
+
+/// The values of a shape that rendering knows, its own and those it inherits.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Primvars {
+    /// Everything that has two numbers.
+    pub uvs: Vec<Data<2>>,
+    pub color: Option<Data<3>>,
+    pub opacity: Option<Data<1>>,
+    pub normals: Option<Data<3>>,
+    pub widths: Option<Data<1>>,
+}
+
+/// How many of what a shape has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Counts {
+    pub faces: usize,
+    /// For `varying`: the points of a mesh, the joints of curves.
+    pub joints: usize,
+    pub points: usize,
+    pub corners: usize,
+}
+
+/// Values that fit a shape: as many places as its count says, and indices that are in range.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Channel<const N: usize> {
+    pub interpolation: Interpolation,
+    pub values: Vec<[f32; N]>,
+    pub indices: Option<Vec<u32>>,
+}
+
+impl<const N: usize> Channel<N> {
+    /// The value at a place.
+    pub fn at(&self, place: usize) -> [f32; N] {
+        match &self.indices {
+            Some(indices) => self.values[indices[place] as usize],
+            None => self.values[place],
+        }
+    }
+
+    /// One value for each place.
+    pub fn flat(self) -> Vec<[f32; N]> {
+        match self.indices {
+            Some(indices) => indices.iter().map(|&i| self.values[i as usize]).collect(),
+            None => self.values,
+        }
+    }
+}
+
+/// The primvars of `prim`, which inherits `inherited`.
+pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) -> Primvars {
+    let api = PrimvarsAPI::from_prim_unchecked(prim.clone());
+    let list = api.find_primvars_with_inheritance_from(inherited).unwrap_or_else(|error| {
+        reading.warn(prim.path(), format!("its primvars can't be read: {error}"));
+        inherited.to_vec()
+    });
+    let mut primvars = Primvars::default();
+    for primvar in &list {
+        match primvar.primvar_name() {
+            "displayColor" => primvars.color = data(reading, primvar, triples),
+            "displayOpacity" => primvars.opacity = data(reading, primvar, scalars),
+            "normals" => primvars.normals = data(reading, primvar, triples),
+            "widths" => primvars.widths = data(reading, primvar, scalars),
+            _ if has_two_numbers(primvar) => primvars.uvs.extend(data(reading, primvar, pairs)),
+            _ => {}
+        }
+    }
+    primvars
+}
+
+fn has_two_numbers(primvar: &Primvar) -> bool {
+    use ValueKind as K;
+    let kind = primvar.attribute().type_name().ok().flatten().and_then(|name| name.kind());
+    matches!(kind, Some(K::Vec2f | K::Vec2d | K::Vec2h | K::Vec2fVec | K::Vec2dVec | K::Vec2hVec))
+}
+
+/// How an attribute converts to numbers.
+type Convert<const N: usize> = fn(Value) -> Option<Vec<[f32; N]>>;
+
+fn data<const N: usize>(reading: &Reading<'_>, primvar: &Primvar, convert: Convert<N>) -> Option<Data<N>> {
+    let mut data = array(reading, primvar.attribute(), convert, Interpolation::Constant)?;
+    data.name = primvar.primvar_name().into();
+    data.stride = primvar.element_size().ok().and_then(|size| usize::try_from(size).ok()).unwrap_or(1).max(1);
+    if primvar.is_indexed().unwrap_or(false) {
+        data.indices = primvar.indices(reading.time).unwrap_or_default();
+        if data.indices.is_none() {
+            reading.warn(primvar.attribute().path(), "its indices can't be read; the primvar is left out");
+            return None;
+        }
+    }
+    Some(data)
+}
+
+/// The array in `attribute`, whose interpolation is `fallback` where none is authored.
+pub(super) fn array<const N: usize>(
+    reading: &Reading<'_>,
+    attribute: &Attribute,
+    convert: Convert<N>,
+    fallback: Interpolation,
+) -> Option<Data<N>> {
+    let value = match attribute.get_at::<Value>(reading.time) {
+        Ok(value) => value?,
+        Err(error) => {
+            reading.warn(attribute.path(), format!("{error}; taken for not authored"));
+            return None;
+        }
+    };
+    let kind = ValueKind::from(&value);
+    let Some(values) = convert(value) else {
+        reading.warn(attribute.path(), format!("a value of type {kind} is not what is expected here; it is left out"));
+        return None;
+    };
+    let token = attribute.get_metadata::<Token>("interpolation").ok().flatten();
+    let interpolation = match token {
+        None => fallback,
+        Some(token) => Interpolation::from_token(&token).unwrap_or_else(|| {
+            let what = format!("there is no interpolation \"{token}\"; {} is used", fallback.as_token());
+            reading.warn(attribute.path(), what);
+            fallback
+        }),
+    };
+    Some(Data { name: attribute.name().into(), interpolation, values, indices: None, stride: 1 })
+}
+
+impl<const N: usize> Data<N> {
+    /// Holds the values against the counts of the shape; `None`, with a warning, where there are too few.
+    pub fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
+        let Self { name, interpolation, mut values, indices, stride } = self;
+        if stride > 1 {
+            values = values.into_iter().step_by(stride).collect();
+        }
+        let wanted = match interpolation {
+            Interpolation::Constant => 1,
+            Interpolation::Uniform => counts.faces,
+            Interpolation::Varying => counts.joints,
+            Interpolation::Vertex => counts.points,
+            Interpolation::FaceVarying => counts.corners,
+        };
+        let have = indices.as_ref().map_or(values.len(), Vec::len);
+        if have < wanted || values.is_empty() {
+            let kind = interpolation.as_token();
+            warnings.push(place, format!("{name} has {have} values where {kind} ones need {wanted}; it is left out"));
+            return None;
+        }
+        // Constant arrays may be of any length; their first value counts.
+        if have > wanted && interpolation != Interpolation::Constant {
+            let what = format!("{name} has {have} values where {wanted} are needed; the first ones are used");
+            warnings.push(place, what);
+        }
+        let Some(mut indices) = indices else {
+            values.truncate(wanted);
+            return Some(Channel { interpolation, values, indices: None });
+        };
+        indices.truncate(wanted);
+        let wrong = indices.iter().filter(|&&i| usize::try_from(i).map_or(true, |i| i >= values.len())).count();
+        if wrong > 0 {
+            let what = format!("{wrong} indices of {name} are out of range; its first value stands in");
+            warnings.push(place, what);
+        }
+        let clamp = |i: i32| if (i as u32 as usize) < values.len() { i as u32 } else { 0 };
+        let indices = indices.into_iter().map(clamp).collect();
+        Some(Channel { interpolation, values, indices: Some(indices) })
+    }
+}
