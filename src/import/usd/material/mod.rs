@@ -20,8 +20,6 @@ mod surface;
 mod texture;
 
 #[cfg(test)]
-mod assets;
-#[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;
@@ -139,8 +137,8 @@ impl<'a> Materials<'a> {
         self.finished.get(index as usize).map(|finished| &finished.material)
     }
 
-    /// Primvars that `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material
-    /// asks for none must have no colors: they would multiply its base color.
+    /// What `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material asks for
+    /// none must have no colors: they would multiply its base color.
     pub fn vertex_colors(&self, index: u32) -> VertexColors {
         self.finished.get(index as usize).map(|finished| finished.colors.clone()).unwrap_or_default()
     }
