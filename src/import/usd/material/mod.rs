@@ -37,9 +37,6 @@ use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc}
 /// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
 const CONTEXTS: [&str; 2] = ["mtlx", ""];
 
-/// The color of a shape that nothing is bound to and that has no displayColor (UsdImaging).
-pub(super) const FALLBACK_COLOR: [f32; 3] = [0.5; 3];
-
 /// A network and what it was found as.
 struct Found {
     network: Network,
@@ -111,7 +108,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Index of the material of shapes that none is bound to: white times their displayColor, diffuse.
-    /// Shapes without displayColor are [`FALLBACK_COLOR`].
+    /// Shapes without displayColor have to come with colors of 0.5, as UsdImaging gives them.
     pub fn unbound(&mut self) -> u32 {
         if let Some(index) = self.unbound {
             return index;

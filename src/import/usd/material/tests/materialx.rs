@@ -282,3 +282,23 @@ fn circles_and_foreign_values_do_no_harm() {
     assert!(read.warnings.contains("circle"), "{}", read.warnings);
     same(&[read.material().metallic.factor], &[0.0]);
 }
+
+/// Sixty mixes of the one before with itself would be 2⁶⁰ BSDFs.
+#[test]
+fn shared_nodes_are_worked_out_once() {
+    let mut nodes = "def Shader \"m0\" { uniform token info:id = \"ND_oren_nayar_diffuse_bsdf\"
+        token outputs:out }"
+        .to_string();
+    for i in 1..60 {
+        let below = i - 1;
+        nodes += &format!(
+            "def Shader \"m{i}\" {{ uniform token info:id = \"ND_mix_bsdf\"
+                token inputs:bg.connect = </m/m{below}.outputs:out>
+                token inputs:fg.connect = </m/m{below}.outputs:out>
+                float inputs:mix = 0.5
+                token outputs:out }}"
+        );
+    }
+    let read = mtlx("ND_surface", "token inputs:bsdf.connect = </m/m59.outputs:out>", &nodes);
+    same(&read.material().base_color.factor, &[0.18; 3]);
+}
