@@ -46,9 +46,20 @@ fn black(e: &mut Evaluator<'_, '_>) -> Surface {
 
 fn emits(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Id {
     let zero = e.exprs.number(0.0);
+    if let Some(&known) = e.emission.get(&node) {
+        return known;
+    }
     if depth > DEEPEST {
         return zero;
     }
+    e.emission.insert(node, zero);
+    let light = shines(e, node, depth);
+    e.emission.insert(node, light);
+    light
+}
+
+fn shines(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Id {
+    let zero = e.exprs.number(0.0);
     let of = |e: &mut Evaluator<'_, '_>, input: &str| match source(e, node, input) {
         Some(edf) => emits(e, edf, depth + 1),
         None => zero,
@@ -80,6 +91,16 @@ fn scatters(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surf
         e.warn(node, "lies too deep in its network; left out");
         return None;
     }
+    if let Some(known) = e.scattering.get(&node) {
+        return known.clone();
+    }
+    e.scattering.insert(node, None);
+    let surface = compute(e, node, depth);
+    e.scattering.insert(node, surface.clone());
+    surface
+}
+
+fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surface> {
     let of = |e: &mut Evaluator<'_, '_>, input: &str| {
         let bsdf = source(e, node, input)?;
         scatters(e, bsdf, depth + 1)
@@ -88,6 +109,13 @@ fn scatters(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surf
     Some(match category {
         "mix" => {
             let amount = e.scalar(node, "mix", 0.0);
+            // What has no share is not looked at: Blender writes all of Principled's lobes.
+            if e.exprs.is(amount, 0.0) {
+                return of(e, "bg");
+            }
+            if e.exprs.is(amount, 1.0) {
+                return of(e, "fg");
+            }
             let (bg, fg) = (of(e, "bg"), of(e, "fg"));
             match (bg, fg) {
                 (Some(bg), Some(fg)) => mixed(e, node, bg, fg, amount),
@@ -276,12 +304,6 @@ pub(super) fn tangent(e: &mut Evaluator<'_, '_>, node: usize, input: &str) -> f6
 
 /// Between two surfaces, input by input. What only one of them has is there by its share.
 fn mixed(e: &mut Evaluator<'_, '_>, node: usize, bg: Surface, fg: Surface, amount: Id) -> Surface {
-    if e.exprs.is(amount, 0.0) {
-        return bg;
-    }
-    if e.exprs.is(amount, 1.0) {
-        return fg;
-    }
     if bg.normal != fg.normal && bg.normal.is_some() && fg.normal.is_some() {
         e.warn(node, "mixes two normal maps; the one of the background is used");
     }

@@ -6,7 +6,11 @@ use std::sync::Arc;
 use super::expr::{Exprs, Id, Op};
 use super::function::{Function, V};
 use super::network::{Network, Node, Source, Value};
+use super::surface::Surface;
 use super::{Materials, color, pattern, texture};
+
+/// The longest chain of nodes that is followed.
+const DEEPEST: usize = 256;
 
 /// Works through one network.
 pub(super) struct Evaluator<'m, 'a> {
@@ -16,11 +20,22 @@ pub(super) struct Evaluator<'m, 'a> {
     known: HashMap<(usize, String), Id>,
     /// Nodes being worked on: one that is met again closes a cycle.
     open: Vec<usize>,
+    /// BSDF and EDF nodes that are worked out, or being so: `None` and black.
+    pub scattering: HashMap<usize, Option<Surface>>,
+    pub emission: HashMap<usize, Id>,
 }
 
 impl<'m, 'a> Evaluator<'m, 'a> {
     pub fn new(materials: &'m mut Materials<'a>, network: &'m Network) -> Self {
-        Self { materials, network, exprs: Exprs::default(), known: HashMap::new(), open: Vec::new() }
+        Self {
+            materials,
+            network,
+            exprs: Exprs::default(),
+            known: HashMap::new(),
+            open: Vec::new(),
+            scattering: HashMap::new(),
+            emission: HashMap::new(),
+        }
     }
 
     pub fn node(&self, node: usize) -> &'m Node {
@@ -86,6 +101,10 @@ impl<'m, 'a> Evaluator<'m, 'a> {
         }
         if self.open.contains(&source.node) {
             self.warn(source.node, "is connected to itself in a circle; the connection is left out");
+            return None;
+        }
+        if self.open.len() > DEEPEST {
+            self.warn(source.node, format!("lies deeper than {DEEPEST} nodes; left out"));
             return None;
         }
         self.open.push(source.node);

@@ -20,8 +20,6 @@ mod surface;
 mod texture;
 
 #[cfg(test)]
-mod assets;
-#[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;
@@ -38,9 +36,6 @@ use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc}
 
 /// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
 const CONTEXTS: [&str; 2] = ["mtlx", ""];
-
-/// The color of a shape that nothing is bound to and that has no displayColor (UsdImaging).
-pub(super) const FALLBACK_COLOR: [f32; 3] = [0.5; 3];
 
 /// A network and what it was found as.
 struct Found {
@@ -113,7 +108,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Index of the material of shapes that none is bound to: white times their displayColor, diffuse.
-    /// Shapes without displayColor are [`FALLBACK_COLOR`].
+    /// Shapes without displayColor have to come with colors of 0.5, as UsdImaging gives them.
     pub fn unbound(&mut self) -> u32 {
         if let Some(index) = self.unbound {
             return index;
@@ -139,8 +134,8 @@ impl<'a> Materials<'a> {
         self.finished.get(index as usize).map(|finished| &finished.material)
     }
 
-    /// Primvars that `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material
-    /// asks for none must have no colors: they would multiply its base color.
+    /// What `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material asks for
+    /// none must have no colors: they would multiply its base color.
     pub fn vertex_colors(&self, index: u32) -> VertexColors {
         self.finished.get(index as usize).map(|finished| finished.colors.clone()).unwrap_or_default()
     }

@@ -35,9 +35,9 @@ fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     s.roughness = e.scalar(node, "roughness", 0.5);
     s.emission = e.input(node, "emissiveColor", [0.0; 4]);
     s.ior = e.scalar(node, "ior", 1.5);
-    let coat_roughness = e.scalar(node, "clearcoatRoughness", 0.01);
-    let weight = e.scalar(node, "clearcoat", 0.0);
-    s.coat = Some(Coat { weight, roughness: coat_roughness, ior: s.ior, normal: None });
+    s.normal = e.optional(node, "normal");
+    let (weight, roughness) = (e.scalar(node, "clearcoat", 0.0), e.scalar(node, "clearcoatRoughness", 0.01));
+    s.coat = Some(Coat { weight, roughness, ior: s.ior, normal: s.normal });
     if e.uniform(node, "useSpecularWorkflow", 0.0) == 0.0 {
         s.metallic = e.scalar(node, "metallic", 0.0);
     } else {
@@ -51,7 +51,6 @@ fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     if threshold > 0.0 {
         s.alpha = Alpha::Mask(threshold);
     }
-    s.normal = e.optional(node, "normal");
     s.occlusion = e.optional(node, "occlusion");
     let displacement = e.scalar(node, "displacement", 0.0);
     if !e.exprs.is(displacement, 0.0) {

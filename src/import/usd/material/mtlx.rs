@@ -108,6 +108,7 @@ impl<'x> Builder<'_, 'x> {
         let node = Node {
             category: category.to_string(),
             kind: kind(element),
+            materialx: true,
             place: Place::file(self.file).at(element.attribute("name").unwrap_or(category)),
             inputs: Default::default(),
         };

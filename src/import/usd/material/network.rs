@@ -19,6 +19,8 @@ pub(super) struct Node {
     pub category: String,
     /// The type in its identifier, as "color3"; empty where there is none.
     pub kind: String,
+    /// True for a node that MaterialX defines; its defaults differ from USD's.
+    pub materialx: bool,
     pub place: Place,
     pub inputs: BTreeMap<String, Input>,
 }

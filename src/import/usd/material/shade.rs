@@ -64,6 +64,7 @@ impl Builder<'_, '_> {
         let node = Node {
             category: name.to_string(),
             kind: kind.to_string(),
+            materialx: id.starts_with("ND_"),
             place: self.reading.place_of(prim.path()),
             inputs: BTreeMap::new(),
         };

@@ -75,12 +75,13 @@ pub(super) struct Finished {
     pub colors: VertexColors,
 }
 
-/// Primvars that a shape's vertex colors hold for its material.
+/// What a shape's vertex colors hold for its material: displayColor multiplies the base color,
+/// displayOpacity alpha.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in super::super) struct VertexColors {
-    /// Multiplied onto the base color.
+    /// "displayColor", where the material shows it.
     pub color: Option<Arc<str>>,
-    /// Multiplied onto alpha.
+    /// "displayOpacity", where the material shows it; never without the color.
     pub opacity: Option<Arc<str>>,
 }
 
@@ -115,9 +116,13 @@ impl Surface {
 
 /// The surface as a material; `node` is where warnings are told.
 pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -> Finished {
-    let mut f = Finisher { e, node };
-    let (color, base_color) = f.without_primvar(surface.base_color);
-    let (opacity, alpha) = f.without_primvar(surface.opacity);
+    let mut f = Finisher { e, node, baked: Vec::new() };
+    let (color, base_color) = f.without_primvar("displayColor", surface.base_color);
+    let (opacity, alpha) = match color {
+        Some(_) => f.without_primvar("displayOpacity", surface.opacity),
+        // Vertex colors hold both, and the color would tint.
+        None => (None, surface.opacity),
+    };
     let mut colors = VertexColors { color, opacity };
     let mut material = MaterialDesc {
         base_color: f.color("base color", base_color),
@@ -182,6 +187,8 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
 struct Finisher<'e, 'm, 'a> {
     e: &'e mut Evaluator<'m, 'a>,
     node: usize,
+    /// Images that were computed, with their channels.
+    baked: Vec<(Id, u8, TextureRef)>,
 }
 
 impl Finisher<'_, '_, '_> {
@@ -268,27 +275,28 @@ impl Finisher<'_, '_, '_> {
         Some(ScalarInput { factor: 1.0, texture: Some((texture, Channel::R)) })
     }
 
-    /// A primvar that multiplies all the rest, and the rest.
-    fn without_primvar(&mut self, id: Id) -> (Option<Arc<str>>, Id) {
-        let primvar = |e: &Evaluator<'_, '_>, id: Id| match e.exprs.op(id) {
-            Op::Primvar { name, .. } => Some(name.clone()),
-            Op::Apply(Function::Swizzle(_), args) => match e.exprs.op(args[0]) {
-                Op::Primvar { name, .. } => Some(name.clone()),
+    /// The primvar `wanted`, where it multiplies all the rest, and the rest.
+    fn without_primvar(&mut self, wanted: &str, id: Id) -> (Option<Arc<str>>, Id) {
+        let primvar = |id: Id| {
+            let id = match self.e.exprs.op(id) {
+                Op::Apply(Function::Swizzle(_), args) => args[0],
+                _ => id,
+            };
+            match self.e.exprs.op(id) {
+                Op::Primvar { name, .. } if **name == *wanted => Some(name.clone()),
                 _ => None,
-            },
-            _ => None,
+            }
         };
-        if let Some(name) = primvar(self.e, id) {
+        if let Some(name) = primvar(id) {
             return (Some(name), self.e.exprs.number(1.0));
         }
-        if let Op::Apply(Function::Multiply, args) = self.e.exprs.op(id).clone()
+        if let Op::Apply(Function::Multiply, args) = self.e.exprs.op(id)
             && let [a, b] = args[..]
         {
-            if let Some(name) = primvar(self.e, a) {
-                return (Some(name), b);
-            }
-            if let Some(name) = primvar(self.e, b) {
-                return (Some(name), a);
+            for (one, other) in [(a, b), (b, a)] {
+                if let Some(name) = primvar(one) {
+                    return (Some(name), other);
+                }
             }
         }
         (None, id)
@@ -321,6 +329,9 @@ impl Finisher<'_, '_, '_> {
 
     /// A computed image; `None` where nothing textures it.
     fn bake(&mut self, what: &str, id: Id, channels: u8) -> Option<TextureRef> {
+        if let Some((_, _, known)) = self.baked.iter().find(|baked| (baked.0, baked.1) == (id, channels)) {
+            return Some(*known);
+        }
         let Evaluator { materials, exprs, .. } = &mut *self.e;
         let domain = bake::domain(exprs, id, materials.tables())?;
         let pixels = bake::image(exprs, id, &domain, materials.tables(), channels);
@@ -340,7 +351,9 @@ impl Finisher<'_, '_, '_> {
         });
         let [wrap_u, wrap_v] = domain.wrap;
         let texture = self.e.materials.texture(TextureDesc { place, image, wrap_u, wrap_v, filter: domain.filter });
-        Some(TextureRef { texture, uv_set: domain.uv_set, transform: domain.transform })
+        let texture = TextureRef { texture, uv_set: domain.uv_set, transform: domain.transform };
+        self.baked.push((id, channels, texture));
+        Some(texture)
     }
 }
 

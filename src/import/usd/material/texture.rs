@@ -31,11 +31,10 @@ pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
             Space::Auto
         }
     };
-    let of_mtlx = data.place.file.as_deref().is_some_and(|file| file.extension().is_some_and(|x| x == "mtlx"));
     let uv = match e.optional(node, "st") {
         Some(uv) if data.inputs.get("st").is_some_and(|st| st.source.is_some()) => uv,
         _ => {
-            if !of_mtlx {
+            if !data.materialx {
                 e.warn(node, "its st is not connected; primvars:st is used");
             }
             e.texcoord("st".into())
@@ -46,7 +45,7 @@ pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
         Some("clamp") => Wrap::Clamp,
         Some("mirror") => Wrap::Mirror,
         // MaterialX's definition of the node repeats.
-        None if of_mtlx => Wrap::Repeat,
+        None if data.materialx => Wrap::Repeat,
         // "useMetadata" is black for files without; of what is read here none has any.
         _ => Wrap::Black,
     });

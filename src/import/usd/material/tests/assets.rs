@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::*;
+use super::super::*;
+use super::same;
 use crate::desc::{AlphaMode, Channel, ColorSpace, TextureTransform, Wrap};
 use crate::import::ImportOptions;
 
@@ -31,15 +32,6 @@ fn read(file: &str, paths: &[&str]) -> Option<(Vec<Option<MaterialDesc>>, SceneD
     let warnings = warnings.join("\n");
     println!("{file}:\n{warnings}");
     Some((found, scene, warnings))
-}
-
-fn close(a: f64, b: f64) -> bool {
-    (a - b).abs() < 1e-6
-}
-
-#[track_caller]
-fn same(a: &[f64], b: &[f64]) {
-    assert!(a.len() == b.len() && a.iter().zip(b).all(|(a, b)| close(*a, *b)), "{a:?} is not {b:?}");
 }
 
 #[test]

@@ -1,0 +1,304 @@
+//! MaterialX's surfaces and nodes, in networks and in documents.
+
+use super::super::super::images::tests::png;
+use super::*;
+use crate::desc::{AlphaMode, Channel, ColorSpace, PixelData, TextureTransform, Wrap};
+
+#[test]
+fn standard_surface_folds_its_weights() {
+    let read = mtlx(
+        "ND_standard_surface_surfaceshader",
+        "float inputs:base = 0.5
+         color3f inputs:base_color = (0.2, 0.4, 0.6)
+         float inputs:metalness = 0.25
+         float inputs:specular = 0.75
+         float inputs:specular_IOR = 1.4
+         float inputs:coat = 0.5
+         color3f inputs:coat_color = (0.5, 1, 1)
+         float inputs:sheen = 0.5
+         color3f inputs:sheen_color = (1, 0.5, 0)
+         float inputs:thin_film_thickness = 400
+         float inputs:emission = 3
+         color3f inputs:emission_color = (1, 2, 3)
+         color3f inputs:opacity = (0.5, 0.5, 0.5)",
+        "",
+    );
+    let m = read.material();
+    // Half the coat is half as red: (0.75, 1, 1).
+    same(&m.base_color.factor, &[0.075, 0.2, 0.3]);
+    same(&[m.metallic.factor, m.specular.factor, m.ior, m.roughness.factor], &[0.25, 0.75, 1.4, 0.2]);
+    same(&[m.coat.unwrap().weight.factor, m.coat.unwrap().roughness.factor], &[0.5, 0.1]);
+    same(&m.sheen.unwrap().color.factor, &[0.5, 0.25, 0.0]);
+    same(&[m.iridescence.unwrap().thickness_max, m.iridescence.unwrap().ior], &[400.0, 1.5]);
+    same(&m.emission.factor, &[3.0, 6.0, 9.0]);
+    same(&[m.alpha.factor], &[0.5]);
+    assert_eq!(m.alpha_mode, AlphaMode::Blend);
+}
+
+#[test]
+fn transmission_has_an_inside_with_depth_in_metres() {
+    let lines = "float inputs:transmission_weight = 1
+        color3f inputs:transmission_color = (0.5, 0.6, 0.7)
+        float inputs:transmission_depth = 2";
+    let id = "ND_open_pbr_surface_surfaceshader";
+    let volume = mtlx(id, lines, "").material().volume.unwrap();
+    // Stages without metersPerUnit count centimetres.
+    same(&[volume.attenuation_distance], &[0.02]);
+    same(&volume.attenuation_color, &[0.5, 0.6, 0.7]);
+    let thin = mtlx(id, &format!("{lines}\nbool inputs:geometry_thin_walled = 1"), "");
+    assert!(thin.material().volume.is_none());
+    let tinted = mtlx(id, &lines.replace("= 2", "= 0"), "");
+    same(&tinted.material().base_color.factor, &[0.5, 0.6, 0.7]);
+    assert_eq!(tinted.material().volume.unwrap().attenuation_distance, f64::INFINITY);
+}
+
+#[test]
+fn open_pbr_of_blender() {
+    let read = mtlx(
+        "ND_open_pbr_surface_surfaceshader",
+        "float inputs:coat_weight = 0.5
+         float inputs:coat_ior = 1.5
+         float inputs:coat_darkening
+         float inputs:emission_luminance = 3
+         float inputs:fuzz_weight = 0.4
+         float inputs:geometry_opacity = 0.5
+         float3 inputs:geometry_normal
+         float inputs:specular_roughness_anisotropy = 0.21
+         float3 inputs:geometry_tangent.connect = </m/turned.outputs:out>
+         float inputs:subsurface_weight = 0.2
+         float inputs:thin_film_thickness = 0.3
+         float inputs:thin_film_weight = 1",
+        "def Shader \"turned\" { uniform token info:id = \"ND_rotate3d_vector3\"
+            float inputs:amount = -90
+            float3 inputs:in.connect = </m/t.outputs:out>
+            float3 outputs:out }
+         def Shader \"t\" { uniform token info:id = \"ND_tangent_vector3\"
+            float3 outputs:out }",
+    );
+    let m = read.material();
+    same(&[m.emission.factor[0], m.sheen.unwrap().color.factor[0], m.alpha.factor], &[3.0, 0.4, 0.5]);
+    same(&[m.iridescence.unwrap().thickness_max, m.coat.unwrap().ior], &[300.0, 1.5]);
+    let anisotropy = m.anisotropy.unwrap();
+    same(&[anisotropy.strength, anisotropy.rotation], &[0.21, std::f64::consts::FRAC_PI_2]);
+    assert!(read.warnings.contains("subsurface") && read.warnings.lines().count() == 1, "{}", read.warnings);
+}
+
+#[test]
+fn gltf_pbr_has_its_alpha_modes() {
+    let lines = "color3f inputs:base_color = (1, 0.5, 0)
+        float inputs:alpha = 0.5
+        color3f inputs:emissive = (1, 1, 0)
+        float inputs:emissive_strength = 5";
+    let read = mtlx("ND_gltf_pbr_surfaceshader", lines, "");
+    let m = read.material();
+    assert_eq!((m.alpha_mode, m.alpha), (AlphaMode::Opaque, ScalarInput::constant(1.0)));
+    same(&[m.metallic.factor, m.roughness.factor], &[1.0, 1.0]);
+    same(&m.emission.factor, &[5.0, 5.0, 0.0]);
+    let mask = mtlx("ND_gltf_pbr_surfaceshader", &format!("{lines}\nint inputs:alpha_mode = 1"), "");
+    assert_eq!(mask.material().alpha_mode, AlphaMode::Mask { cutoff: 0.5 });
+}
+
+#[test]
+fn closures_of_blender() {
+    let surface = |bsdf: &str| {
+        let text = material_of("mtlx:", "ND_surface", "token inputs:bsdf.connect = </m/b.outputs:out>", bsdf);
+        let folder = tempfile::tempdir().unwrap();
+        read_at(folder.path(), &format!("(\n doc = \"Blender v5.0.1\"\n)\n{text}"), "/m").material.unwrap()
+    };
+    let glass = surface(
+        "def Shader \"b\" { uniform token info:id = \"ND_dielectric_bsdf\"
+            float2 inputs:roughness = (0.1, 0.1)
+            string inputs:scatter_mode = \"RT\"
+            color3f inputs:tint = (0.2, 0.5, 0.8)
+            token outputs:out }",
+    );
+    same(&glass.base_color.factor, &[0.2, 0.5, 0.8]);
+    same(&[glass.transmission.factor, glass.roughness.factor, glass.specular.factor], &[1.0, 0.1, 1.0]);
+    assert!(glass.volume.is_some());
+    let diffuse = surface(
+        "def Shader \"b\" { uniform token info:id = \"ND_oren_nayar_diffuse_bsdf\"
+            color3f inputs:color = (0.2, 0.5, 0.8)
+            token outputs:out }",
+    );
+    same(&diffuse.base_color.factor, &[0.2, 0.5, 0.8]);
+    same(&[diffuse.specular.factor, diffuse.metallic.factor], &[0.0, 0.0]);
+    let glossy = surface(
+        "def Shader \"b\" { uniform token info:id = \"ND_conductor_bsdf\"
+            color3f inputs:ior.connect = </m/i.outputs:ior>
+            float2 inputs:roughness = (0.5, 0.5)
+            token outputs:out }
+         def Shader \"i\" { uniform token info:id = \"ND_artistic_ior\"
+            color3f inputs:reflectivity = (0.2, 0.5, 0.8)
+            color3f outputs:ior }",
+    );
+    same(&[glossy.metallic.factor, glossy.roughness.factor, glossy.base_color.factor[1]], &[1.0, 0.5, 0.5]);
+}
+
+#[test]
+fn closures_mix_and_emit() {
+    let read = mtlx(
+        "ND_surface",
+        "token inputs:bsdf.connect = </m/mix.outputs:out>
+         token inputs:edf.connect = </m/e.outputs:out>
+         float inputs:opacity = 0.5",
+        "def Shader \"mix\" { uniform token info:id = \"ND_mix_bsdf\"
+            token inputs:bg.connect = </m/d.outputs:out>
+            token inputs:fg.connect = </m/c.outputs:out>
+            float inputs:mix = 0.25
+            token outputs:out }
+         def Shader \"d\" { uniform token info:id = \"ND_oren_nayar_diffuse_bsdf\"
+            color3f inputs:color = (0.8, 0.8, 0.8)
+            token outputs:out }
+         def Shader \"c\" { uniform token info:id = \"ND_conductor_bsdf\"
+            float2 inputs:roughness = (0.04, 0.04)
+            token outputs:out }
+         def Shader \"e\" { uniform token info:id = \"ND_uniform_edf\"
+            color3f inputs:color = (1.4, 3.5, 5.6)
+            token outputs:out }",
+    );
+    let m = read.material();
+    // MaterialX's roughness is the width α: 0.2 squared.
+    same(&[m.metallic.factor, m.roughness.factor, m.alpha.factor], &[0.25, 0.2, 0.5]);
+    same(&m.emission.factor, &[1.4, 3.5, 5.6]);
+    // Gold's reflectance in red from its index: ((n − 1)² + k²) / ((n + 1)² + k²).
+    let gold = ((0.183_f64 - 1.0).powi(2) + 3.424_f64.powi(2)) / (1.183_f64.powi(2) + 3.424_f64.powi(2));
+    same(&[m.base_color.factor[0]], &[0.75 * 0.8 + 0.25 * gold]);
+}
+
+#[test]
+fn a_graph_of_images_is_computed_texel_by_texel() {
+    let folder = tempfile::tempdir().unwrap();
+    png(folder.path(), "a.png", 2, &[[0, 51, 102], [255, 204, 153]]);
+    png(folder.path(), "b.png", 2, &[[255, 0, 0], [51, 0, 0]]);
+    let image = |name: &str, file: &str, kind: &str, usd: &str| {
+        format!(
+            "def Shader \"{name}\" {{ uniform token info:id = \"ND_image_{kind}\"
+                asset inputs:file = @{file}@ ( colorSpace = \"lin_rec709\" )
+                string inputs:uaddressmode = \"clamp\"
+                {usd} outputs:out }}"
+        )
+    };
+    let nodes = [
+        image("a", "a.png", "color3", "color3f"),
+        image("b", "b.png", "float", "float"),
+        "def Shader \"mix\" { uniform token info:id = \"ND_mix_color3\"
+            color3f inputs:bg.connect = </m/a.outputs:out>
+            color3f inputs:fg = (1, 1, 1)
+            float inputs:mix.connect = </m/b.outputs:out>
+            color3f outputs:out }"
+            .to_string(),
+    ]
+    .join("\n");
+    let lines = "color3f inputs:base_color.connect = </m/mix.outputs:out>
+        float inputs:specular_roughness.connect = </m/b.outputs:out>";
+    let read = mtlx_in(folder.path(), "ND_open_pbr_surface_surfaceshader", lines, &nodes);
+    let m = read.material();
+    let (texture, image) = read.texture(m.base_color.texture.unwrap().texture);
+    assert_eq!((texture.wrap_u, texture.wrap_v), (Wrap::Clamp, Wrap::Repeat));
+    // b is 1 at the first texel (white) and 0.2 at the second: a + 0.2 (1 − a).
+    let expected = [1.0, 1.0, 1.0, 1.0, 0.84, 0.68];
+    let PixelData::F16(pixels) = &image.pixels else { panic!() };
+    assert!(pixels.iter().zip(expected).all(|(a, b)| (a.to_f64() - b).abs() < 5e-4), "{pixels:?}");
+    let (_, channel) = m.roughness.texture.unwrap();
+    assert_eq!(channel, Channel::R);
+    assert_eq!(read.warnings, "");
+}
+
+#[test]
+fn a_document_is_read_through_its_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    png(folder.path(), "a.png", 1, &[[255, 128, 0]]);
+    let document = r#"<?xml version="1.0"?>
+<materialx version="1.39" colorspace="lin_rec709" fileprefix="./">
+  <nodegraph name="g">
+    <input name="gain" type="float" value="0.5" />
+    <image name="t" type="color3">
+      <input name="file" type="filename" value="a.png" colorspace="srgb_texture" />
+      <input name="uaddressmode" type="string" value="mirror" />
+    </image>
+    <multiply name="dim" type="color3">
+      <input name="in1" type="color3" nodename="t" />
+      <input name="in2" type="float" interfacename="gain" />
+    </multiply>
+    <normalmap name="n" type="vector3">
+      <input name="in" type="vector3" nodename="nt" />
+      <input name="scale" type="float" value="0.25" />
+    </normalmap>
+    <tiledimage name="nt" type="vector3">
+      <input name="file" type="filename" value="a.png" />
+      <input name="uvtiling" type="vector2" value="4, 2" />
+    </tiledimage>
+    <output name="color" type="color3" nodename="dim" />
+    <output name="normal" type="vector3" nodename="n" />
+  </nodegraph>
+  <standard_surface name="SR" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="g" output="color" />
+    <input name="normal" type="vector3" nodegraph="g" output="normal" />
+    <input name="thin_walled" type="boolean" value="true" />
+  </standard_surface>
+  <surfacematerial name="paint" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="SR" />
+  </surfacematerial>
+</materialx>"#;
+    std::fs::write(folder.path().join("doc.mtlx"), document).unwrap();
+    for (text, path) in [
+        ("def Scope \"M\" (references = @./doc.mtlx@</MaterialX>) {}", "/M/Materials/paint"),
+        ("def Scope \"M\" (prepend references = @doc.mtlx@</MaterialX/Materials>) {}", "/M/paint"),
+        ("def Material \"other\" (references = @doc.mtlx@</MaterialX/Materials/paint>) {}", "/other"),
+    ] {
+        let read = read_at(folder.path(), text, path);
+        let m = read.material();
+        same(&m.base_color.factor, &[0.5; 3]);
+        let (texture, image) = read.texture(m.base_color.texture.unwrap().texture);
+        assert_eq!((texture.wrap_u, image.color_space), (Wrap::Mirror, ColorSpace::Srgb));
+        let normal = m.normal.unwrap();
+        same(&[normal.scale], &[0.25]);
+        let TextureTransform([u, v]) = normal.texture.transform;
+        same(&[u[0], v[1], v[2]], &[4.0, 2.0, -1.0]);
+        assert_eq!(read.texture(normal.texture.texture).1.color_space, ColorSpace::Linear);
+        assert_eq!(read.warnings, "");
+    }
+    let gone = read_at(folder.path(), "def Scope \"M\" (references = @no.mtlx@</MaterialX>) {}", "/M/Materials/paint");
+    assert!(gone.material.is_none() && gone.warnings.contains("no.mtlx"), "{}", gone.warnings);
+}
+
+#[test]
+fn circles_and_foreign_values_do_no_harm() {
+    let nodes = "
+        def Shader \"a\" { uniform token info:id = \"ND_add_float\"
+            float inputs:in1.connect = </m/b.outputs:out>
+            float outputs:out }
+        def Shader \"b\" { uniform token info:id = \"ND_add_float\"
+            float inputs:in1.connect = </m/a.outputs:out>
+            float outputs:out }";
+    let read = mtlx(
+        "ND_open_pbr_surface_surfaceshader",
+        "float inputs:specular_roughness.connect = </m/a.outputs:out>
+         string inputs:base_metalness = \"yes\"
+         float inputs:base_weight.connect = </m/nothing.outputs:out>
+         float inputs:specular_ior = 1e40",
+        nodes,
+    );
+    assert!(read.warnings.contains("circle"), "{}", read.warnings);
+    same(&[read.material().metallic.factor], &[0.0]);
+}
+
+/// Sixty mixes of the one before with itself would be 2⁶⁰ BSDFs.
+#[test]
+fn shared_nodes_are_worked_out_once() {
+    let mut nodes = "def Shader \"m0\" { uniform token info:id = \"ND_oren_nayar_diffuse_bsdf\"
+        token outputs:out }"
+        .to_string();
+    for i in 1..60 {
+        let below = i - 1;
+        nodes += &format!(
+            "def Shader \"m{i}\" {{ uniform token info:id = \"ND_mix_bsdf\"
+                token inputs:bg.connect = </m/m{below}.outputs:out>
+                token inputs:fg.connect = </m/m{below}.outputs:out>
+                float inputs:mix = 0.5
+                token outputs:out }}"
+        );
+    }
+    let read = mtlx("ND_surface", "token inputs:bsdf.connect = </m/m59.outputs:out>", &nodes);
+    same(&read.material().base_color.factor, &[0.18; 3]);
+}
