@@ -174,9 +174,11 @@ pub(super) fn bound(
     None
 }
 
+/// True for a material, and for a path without prim: it may be in a MaterialX document, which composition
+/// can't look into but the materials can.
 fn is_material(reading: &Reading<'_>, path: &Path) -> bool {
     let kind = reading.stage.prim(path).ok().and_then(|prim| prim.type_name().ok().flatten());
-    kind.is_some_and(|kind| kind.as_str() == "Material")
+    kind.is_none_or(|kind| kind.as_str() == "Material")
 }
 
 fn direct_of(prim: &Prim, name: &Token) -> Option<Bound> {

@@ -9,6 +9,10 @@ use crate::error::Place;
 /// Tells of everything that composition left out so far.
 pub(super) fn tell(reading: &Reading<'_>) {
     for diagnostic in reading.stage.composition_errors() {
+        // MaterialX documents are read by the materials, not by composition.
+        if matches!(&diagnostic, CompositionDiagnostic::MalformedLayer { asset_path, .. } if is_document(asset_path)) {
+            continue;
+        }
         let (layer, prim, what) = describe(&diagnostic);
         let place = match layer {
             Some(layer) => Place::file(layer),
@@ -66,6 +70,10 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
         }
         _ => (None, None, format!("{diagnostic}; it is left out")),
     }
+}
+
+fn is_document(asset_path: &str) -> bool {
+    asset_path.to_ascii_lowercase().ends_with(".mtlx")
 }
 
 fn arc_name(arc: ArcType) -> &'static str {

@@ -138,9 +138,11 @@ fn slots(
 fn wants(materials: &Materials<'_>, slots: &[Option<u32>]) -> Wants {
     let each = || slots.iter().flatten().copied();
     // The UV pass shows the first set, whatever the materials use.
-    let sets = 1 + each().flat_map(|m| materials.used_uv_sets(m)).max().unwrap_or(0) as usize;
+    let used: Vec<u32> = each().flat_map(|m| materials.used_uv_sets(m)).collect();
+    let sets = 1 + used.iter().max().map_or(0, |&set| set as usize);
     Wants {
         uv_sets: materials.uv_sets.iter().take(sets).cloned().collect(),
+        spare_first_set: !used.contains(&0),
         tangents: each().find_map(|m| materials.tangent_uv_set(m)),
         // Colours of a mesh are those of all of it: they must not tint a material that has its own.
         display_color: each().all(|m| tinted(materials, m)),

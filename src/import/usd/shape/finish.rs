@@ -85,7 +85,7 @@ impl Surface {
         let mut sets = Vec::with_capacity(wants.uv_sets.len());
         for name in &wants.uv_sets {
             let found = uvs.iter().position(|(known, _)| known == name).map(|i| uvs.swap_remove(i).1);
-            if found.is_none() && !name.is_empty() {
+            if found.is_none() && !(wants.spare_first_set && sets.is_empty()) {
                 let what = format!("its material looks textures up by primvar {name}, which is absent; (0, 0) is used");
                 warnings.push(place, what);
             }
@@ -94,7 +94,10 @@ impl Surface {
                 None => Attribute::Point(vec![[0.0, 1.0]; points.len()]),
             });
         }
-        let colors = colors(color.map(|c| spread.attribute(c)), opacity.map(|o| spread.attribute(o)), &triangles);
+        // What has no displayColor is grey, as in usdview.
+        let grey = || wants.display_color.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
+        let color = color.map(|c| spread.attribute(c)).or_else(grey);
+        let colors = colors(color, opacity.map(|o| spread.attribute(o)), &triangles);
         let material_slots = slots.map(|slots| match &triangles.faces {
             Some(faces) => faces.iter().map(|&face| slots[face as usize]).collect(),
             None => slots,
@@ -122,6 +125,9 @@ impl Surface {
         })
     }
 }
+
+/// Colour of shapes that are to show theirs and have none (UsdImaging's fallback).
+const UNCOLORED: [f32; 3] = [0.5; 3];
 
 /// Lays values over triangles.
 struct Spread<'a> {

@@ -46,6 +46,8 @@ pub(super) enum Source {
 pub(super) struct Wants {
     /// UV set `i` is the primvar of this name.
     pub uv_sets: Vec<Arc<str>>,
+    /// True where no material looks at the first set; the UV pass shows it if it is there.
+    pub spare_first_set: bool,
     /// The UV set that tangents go by.
     pub tangents: Option<u32>,
     /// displayColor and displayOpacity as colours of the mesh.
