@@ -6,7 +6,7 @@ Matrices are those of USD, for row vectors: the rows are the images of the axes 
 import math
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade
+from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
 Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
 LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
@@ -54,9 +54,13 @@ class Stage:
         return [prim for prim in self.prims() if prim.IsA(UsdGeom.Gprim) and self.visible(prim)]
 
     def bound(self, prim):
-        """The path of the material that is bound to `prim`; empty for none."""
-        material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
-        return material.GetPrim() if material else None
+        """The material that is bound to `prim`, if it has a surface."""
+        material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial(UsdShade.Tokens.full)[0]
+        return material.GetPrim() if material and self.has_surface(material) else None
+
+    def has_surface(self, material):
+        material = UsdShade.Material(material)
+        return bool(material) and any(material.ComputeSurfaceSource(context)[0] for context in ("mtlx", ""))
 
     # Meshes
 
@@ -65,7 +69,10 @@ class Stage:
         the counts don't fit."""
         mesh = UsdGeom.Mesh(prim)
         get = lambda attribute, dtype: np.array(attribute.Get(self.time) or [], dtype=dtype)
-        points = get(mesh.GetPointsAttr(), np.float32).reshape(-1, 3)
+        points = mesh.GetPointsAttr().Get(self.time)
+        if points is not None and not isinstance(points, Vt.Vec3fArray):
+            return None
+        points = np.array(points or [], np.float32).reshape(-1, 3)
         counts, indices = get(mesh.GetFaceVertexCountsAttr(), int), get(mesh.GetFaceVertexIndicesAttr(), int)
         if counts.sum() != len(indices) or (len(indices) and not (0 <= indices.min() and indices.max() < len(points))):
             return None
