@@ -489,3 +489,51 @@ def test_blenders_lamps_come_back_as_cycles_has_them(blender, file):
     }
     for (name, key), number in expected.items():
         assert value(name, key) == pytest.approx(number, rel=1e-5), (name, key)
+
+
+@pytest.mark.parametrize("up", ["Y", "Z"])
+@pytest.mark.parametrize("dome", ["DomeLight", "DomeLight_1"])
+def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
+    """OpenEXR's lat-long maps: u = 0.5 - lon / 2 pi, v = 0.5 + lat / pi, lon = atan2(x, z), lat = asin(y)."""
+    oiio = pytest.importorskip("OpenImageIO")
+    width, height, column, row = 64, 32, 10, 8
+    pixels = np.full((height, width, 3), 0.01, np.float32)
+    pixels[row, column] = [0.0, 9.0, 0.0]
+    spec = oiio.ImageSpec(width, height, 3, "float")
+    image = oiio.ImageOutput.create(str(tmp_path / "sky.exr"))
+    assert image.open(str(tmp_path / "sky.exr"), spec) and image.write_image(pixels) and image.close()
+    lon = 2 * math.pi * (0.5 - (column + 0.5) / width)
+    lat = math.pi * (0.5 - (row + 0.5) / height)
+    toward = np.array([math.cos(lat) * math.sin(lon), math.sin(lat), math.cos(lat) * math.cos(lon)])
+    if dome == "DomeLight_1" and up == "Z":
+        toward = np.array([toward[0], -toward[2], toward[1]])
+    # About z by 40 degrees, with the light.
+    sin, cos = math.sin(math.radians(40)), math.cos(math.radians(40))
+    toward = np.array([cos * toward[0] - sin * toward[1], sin * toward[0] + cos * toward[1], toward[2]])
+    right = np.cross(toward, [0.3, 0.5, 0.8])
+    right /= np.linalg.norm(right)
+    axes = np.array([right, np.cross(right, toward), -toward])
+    matrix = ", ".join("({}, {}, {}, 0)".format(*axis) for axis in axes)
+    (tmp_path / "dome.usda").write_text(
+        f"""#usda 1.0
+        ( upAxis = "{up}" )
+        def {dome} "Sky" {{
+            asset inputs:texture:file = @./sky.exr@
+            float xformOp:rotateZ = 40
+            uniform token[] xformOpOrder = ["xformOp:rotateZ"]
+        }}
+        def Camera "Cam" {{
+            float horizontalAperture = 20
+            float verticalAperture = 20
+            matrix4d xformOp:transform = ( {matrix}, (0, 0, 0, 1) )
+            uniform token[] xformOpOrder = ["xformOp:transform"]
+        }}
+        """
+    )
+    out = tmp_path / "out.exr"
+    command = [PENUMBRA, "render", tmp_path / "dome.usda", "-o", out, "--size", "33x33", "--spp", "1"]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    picture = oiio.ImageInput.open(str(out)).read_image(0, 0, 0, 3, oiio.FLOAT)
+    rows, columns = np.nonzero(picture[..., 1] > 0.5 * picture[..., 1].max())
+    assert picture[16, 16, 1] > 6 and abs(rows.mean() - 16) < 1.5 and abs(columns.mean() - 16) < 1.5
