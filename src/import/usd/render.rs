@@ -269,8 +269,8 @@ mod tests {
         def Scope "Vars" {
             def RenderVar "Ci" { uniform string sourceName = "Ci" }
             def RenderVar "z" {}
-            def RenderVar "N" { uniform string sourceName = "Nn" uniform token sourceType = "intrinsic" }
-            def RenderVar "Diffuse" { uniform string sourceName = "C<RD>[<L.>O]" uniform token sourceType = "lpe" }
+            def RenderVar "N" { uniform string sourceName = "Nn"; uniform token sourceType = "intrinsic" }
+            def RenderVar "Diffuse" { uniform string sourceName = "C<RD>[<L.>O]"; uniform token sourceType = "lpe" }
             def RenderVar "Key" { uniform string sourceName = "penumbra:shadow_key" }
             def RenderVar "Odd" { uniform string sourceName = "wobble" }
         }

@@ -91,7 +91,7 @@ mod tests {
     }
 
     const DOMES: &str = r#"def DomeLight "Dome" {}
-        def DomeLight "Turned" { float xformOp:rotateY = 90 uniform token[] xformOpOrder = ["xformOp:rotateY"] }
+        def DomeLight "Turned" { float xformOp:rotateY = 90; uniform token[] xformOpOrder = ["xformOp:rotateY"] }
         def DomeLight_1 "Scene" {}
         def DomeLight_1 "Y" { uniform token poleAxis = "Y" }
         def DomeLight_1 "Z" { uniform token poleAxis = "Z" }"#;

@@ -68,7 +68,7 @@ fn mean(ies: &IesDesc) -> f64 {
     let last = ies.horizontal.last().copied().unwrap_or(0.0);
     // How often the angles that are there go around.
     let (steps, times) = if rows < 2 { (1, 1.0) } else { (rows - 1, 360.0 / last) };
-    let at = |h: usize, v: usize| ies.candela.get(h.min(rows - 1) * columns + v).copied().unwrap_or(0.0);
+    let at = |h: usize, v: usize| ies.candela.get(h.min(rows.saturating_sub(1)) * columns + v).copied().unwrap_or(0.0);
     let mut sum = 0.0;
     for h in 0..steps {
         let around = if rows < 2 { 360.0 } else { ies.horizontal[h + 1] - ies.horizontal[h] };

@@ -192,7 +192,7 @@ mod tests {
             r#"def Xform "Set" {
                 float3 xformOp:scale = (2, 2, 2)
                 uniform token[] xformOpOrder = ["xformOp:scale"]
-                def SphereLight "Sphere" { float inputs:radius = 10 float inputs:intensity = 7 }
+                def SphereLight "Sphere" { float inputs:radius = 10; float inputs:intensity = 7 }
                 def SphereLight "SphereN" (references = </Set/Sphere>) { bool inputs:normalize = 1 }
                 def RectLight "Rect" {
                     float inputs:width = 20
@@ -201,8 +201,8 @@ mod tests {
                     uniform token[] xformOpOrder = ["xformOp:scale"]
                 }
                 def RectLight "RectN" (references = </Set/Rect>) { bool inputs:normalize = 1 }
-                def DiskLight "Disk" { bool inputs:normalize = 1 float inputs:radius = 3 }
-                def CylinderLight "Tube" { bool inputs:normalize = 1 float inputs:radius = 3 float inputs:length = 50 }
+                def DiskLight "Disk" { bool inputs:normalize = 1; float inputs:radius = 3 }
+                def CylinderLight "Tube" { bool inputs:normalize = 1; float inputs:radius = 3; float inputs:length = 50 }
             }"#,
         );
         let LightKind::Sphere { radius, radiance, .. } = light(&stage, "/Set/Sphere").kind else { panic!() };
@@ -249,7 +249,7 @@ mod tests {
         let sun = |angle: f64, normalize: u8| {
             let prim = format!(
                 r#"def DistantLight "A" {{
-                    float inputs:intensity = 2 float inputs:angle = {angle} bool inputs:normalize = {normalize}
+                    float inputs:intensity = 2; float inputs:angle = {angle}; bool inputs:normalize = {normalize}
                 }}"#
             );
             let stage = Stage::new("", &prim);
@@ -279,9 +279,9 @@ mod tests {
     fn points_are_small_spheres() {
         let (stage, light) = stage(
             "metersPerUnit = 0.1",
-            r#"def SphereLight "Point" { bool treatAsPoint = 1 float inputs:radius = 2 float inputs:intensity = 8 }
+            r#"def SphereLight "Point" { bool treatAsPoint = 1; float inputs:radius = 2; float inputs:intensity = 8 }
             def SphereLight "PointN" (references = </Point>) { bool inputs:normalize = 1 }
-            def SphereLight "Zero" { float inputs:radius = 0 bool inputs:normalize = 1 float inputs:intensity = 8 }
+            def SphereLight "Zero" { float inputs:radius = 0; bool inputs:normalize = 1; float inputs:intensity = 8 }
             def SphereLight "Nothing" { float inputs:radius = 0 }"#,
         );
         let intensity = |path: &str| match light(&stage, path).kind {

@@ -13,8 +13,6 @@ mod links;
 mod rules;
 mod shape_light;
 mod shaping;
-#[cfg(test)]
-pub(super) mod testing;
 
 pub(super) use ies::Profiles;
 pub(super) use links::link;
@@ -96,3 +94,6 @@ pub(super) fn read(
         ..LightDesc::new(name, reading.place_of(&placed.path), transform, kind::scaled(kind, factor))
     })
 }
+
+#[cfg(test)]
+pub(super) mod testing;

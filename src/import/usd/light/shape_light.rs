@@ -189,7 +189,7 @@ mod tests {
     fn areas_are_in_the_units_of_the_stage() {
         let stage = Stage::new(
             "metersPerUnit = 0.01",
-            r#"def Mesh "A" { float3 xformOp:scale = (2, 1, 3) uniform token[] xformOpOrder = ["xformOp:scale"] }"#,
+            r#"def Mesh "A" { float3 xformOp:scale = (2, 1, 3); uniform token[] xformOpOrder = ["xformOp:scale"] }"#,
         );
         let mesh = MeshDesc {
             points: vec![[0.0; 3], [100.0, 0.0, 0.0], [100.0, 0.0, 100.0], [0.0, 0.0, 100.0]],

@@ -1,0 +1,539 @@
+"""Stages as Penumbra reads them, against OpenUSD itself (usd-core): prim by prim world transforms, points,
+UVs, bindings, lights, cameras and visibility."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pxr", reason="usd-core is not installed")
+from pxr import Tf, UsdGeom, UsdLux  # noqa: E402
+from usd_judge import LIGHTS, Stage  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+PENUMBRA = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
+ASSETS = ROOT.parent / "shared/assets/usd"
+STAGES = sorted([*ASSETS.rglob("*.usd*"), *(ROOT / "tests/usd/stages").glob("*.usd*")])
+
+# Stages that OpenUSD itself does not answer for, or where it is known to answer something else.
+NOT_JUDGED = {
+    "timeCodesPerSecond_0.usda": "usd-core never ends",
+}
+
+
+def read(path, *args):
+    """Penumbra's answer: its JSON, and by path what it warned of."""
+    command = [PENUMBRA, "info", path, "--json", "--values", "--subdivision", "0", *args]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+class Answer:
+    """What Penumbra says, by the path of the prim."""
+
+    def __init__(self, info):
+        values = info["values"]
+        self.meshes, self.warnings = values["meshes"], info["warnings"]
+        by_place = lambda things: {thing["place"]: thing for thing in things}
+        self.lights, self.cameras = by_place(values["lights"]), by_place(values["cameras"])
+        self.instances = defaultdict(list)
+        for instance in values["instances"]:
+            self.instances[instance["place"]].append(instance)
+
+    def warned(self, path, *words):
+        """True where something was said of the prim or one of its properties, with one of `words` in it."""
+        of_prim = [warning for warning in self.warnings if any(f", {path}{end}" in warning for end in (":", "."))]
+        return any(not words or any(word in warning for word in words) for warning in of_prim)
+
+
+def near(found, expected, tolerance=1e-6):
+    found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+    scale = max(1e-12, np.abs(expected).max()) if expected.size else 1.0
+    return found.shape == expected.shape and (np.abs(found - expected) <= tolerance * scale).all()
+
+
+def rows(values, digits=5):
+    """The distinct rows, sorted, to `digits` of the largest number."""
+    values = np.asarray(values, dtype=float)
+    scale = max(np.abs(values).max(initial=0.0), 1e-30)
+    return np.unique(np.round(values / scale, digits) + 0.0, axis=0)
+
+
+class Differences(list):
+    def check(self, ok, path, what):
+        if not ok:
+            self.append(f"{path}: {what}")
+
+
+def judge(path, *args, frame=None):
+    """All differences between Penumbra and OpenUSD at the stage `path`."""
+    stage, answer, found = Stage(path, frame), Answer(read(path, *args)), Differences()
+    judge_shapes(stage, answer, found)
+    judge_lights(stage, answer, found)
+    judge_cameras(stage, answer, found)
+    return found
+
+
+def judge_shapes(stage, answer, found):
+    left = dict(answer.instances)
+    for prim in stage.gprims():
+        path = str(prim.GetPath())
+        instances = left.pop(path, [])
+        is_mesh = prim.GetTypeName() == "Mesh"
+        faces = stage.faces(prim) if is_mesh else None
+        if not instances:
+            nothing = is_mesh and faces is not None and not faces[1]
+            found.check(nothing or answer.warned(path), path, "is not there, and nothing was said of it")
+            continue
+        if len(instances) == 1:
+            world = stage.world(prim)
+            ours = np.reshape(instances[0]["matrix"], (4, 4))
+            found.check(near(ours, world), path, f"stands at\n{ours}\nand not at\n{world}")
+        if is_mesh and faces is not None:
+            judge_mesh(stage, prim, faces, instances[0], answer, found)
+    expected = stage.instanced()
+    if expected is not None:
+        ours = [np.reshape(i["matrix"], 16) for instances in left.values() for i in instances]
+        expected = [matrix.reshape(16) for matrix in expected]
+        same = len(ours) == len(expected) and near(rows(ours), rows(expected), 2e-5) if ours or expected else True
+        found.check(same, "/", f"{len(ours)} other instances ({sorted(left)[:5]}), not the {len(expected)} of USD")
+
+
+def judge_mesh(stage, prim, faces, instance, answer, found):
+    path, mesh = str(prim.GetPath()), answer.meshes[instance["mesh"]]
+    points, kept = faces
+    corners = np.concatenate([corners for _, corners in kept] or [np.zeros(0, int)])
+    triangles = np.array(mesh["triangles"], dtype=int).reshape(-1, 3)
+    ours = np.array(mesh["points"], dtype=np.float32).reshape(-1, 3)
+    warned = answer.warned(path, "face", "point", "corner", "left out")
+    count = sum(len(corners) - 2 for _, corners in kept)
+    found.check(len(triangles) == count or warned, path, f"has {len(triangles)} triangles, not {count}")
+    if not warned:
+        same = near(rows(ours[triangles.ravel()]), rows(points[corners]), 2e-5)
+        found.check(same, path, "has other points")
+        # The vector area of a polygon does not depend on how it is cut.
+        area = lambda p: 0.5 * np.cross(p, np.roll(p, -1, axis=-2)).sum(axis=-2)
+        sums = area(ours[triangles].astype(float)).sum(axis=0)
+        expected = sum((area(points[corners].astype(float)) for _, corners in kept), np.zeros(3))
+        if UsdGeom.Gprim(prim).GetOrientationAttr().Get(stage.time) == UsdGeom.Tokens.leftHanded:
+            expected = -expected
+        size = np.abs(area(ours[triangles].astype(float))).sum()
+        found.check(np.abs(sums - expected).max() <= 1e-5 * max(size, 1e-30), path, f"faces {sums}, not {expected}")
+        judge_uvs(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
+    if prim.HasAPI(UsdLux.LightAPI):
+        return
+    slots = set(mesh["material_slots"] or [0])
+    used = [instance["materials"][slot] for slot in slots if slot < len(instance["materials"])]
+    is_material = lambda m: m and m["place"] and stage.has_surface(stage.stage.GetPrimAtPath(m["place"]))
+    names = {m["name"] for m in used if is_material(m)}
+    expected = {material.GetName() for material in stage.materials(prim, kept)}
+    found.check(names == expected, path, f"has the materials {names}, not {expected}")
+
+
+def judge_uvs(stage, prim, kept, points, ours, triangles, mesh, found):
+    path, expected = str(prim.GetPath()), stage.uv_corners(prim, kept)
+    if expected is None or not mesh["uvs"]:
+        return
+    uvs = np.array(mesh["uvs"][0]["values"], dtype=float).reshape(-1, 2)
+    uvs = uvs[triangles.ravel()] if mesh["uvs"][0]["per"] == "point" else uvs
+    # The image's top row is v = 0 in Penumbra.
+    pairs = np.hstack([points, np.stack([expected[:, 0], 1.0 - expected[:, 1]], axis=-1)])
+    found.check(near(rows(np.hstack([ours, uvs]), 4), rows(pairs, 4), 3e-4), path, "has other UVs")
+
+
+def judge_lights(stage, answer, found):
+    left = dict(answer.lights)
+    for prim in stage.of_type(*LIGHTS):
+        path, light = str(prim.GetPath()), left.pop(str(prim.GetPath()), None)
+        if not stage.visible(prim):
+            found.check(light is None, path, "is invisible and shines")
+            continue
+        if light is None:
+            found.check(answer.warned(path), path, "is no light, and nothing was said of it")
+            continue
+        expected, kind = stage.light(prim), light["kind"]
+        for key, value in expected.items():
+            same = kind[key] == value if key == "kind" else key in kind and near(kind[key], value)
+            found.check(same or answer.warned(path), path, f"{key} is {kind.get(key)}, not {value}")
+        matrix = np.reshape(light["matrix"], (4, 4))
+        if kind["kind"] == "dome":
+            # Ours: the centre is +x, the left quarter −z, the top +y.
+            ours = np.array([matrix[0], -matrix[2], matrix[1]])[:, :3]
+            ours /= np.linalg.norm(ours, axis=1, keepdims=True)
+            expected = stage.dome_directions(prim)
+            found.check(near(ours, expected), path, f"its image lies to\n{ours}\nnot\n{expected}")
+            continue
+        found.check(near(matrix, stage.world(prim)), path, f"stands at\n{matrix}\nand not at\n{stage.world(prim)}")
+        judge_shaping(stage, prim, light, found)
+
+
+def judge_shaping(stage, prim, light, found):
+    path, shaping, cone = str(prim.GetPath()), stage.shaping(prim), light["shaping"]["cone"]
+    if shaping is None or light["kind"]["kind"] == "distant":
+        found.check(cone is None, path, f"has the cone {cone}, and no ShapingAPI")
+        return
+    angle, softness, focus = shaping
+    found.check(near(light["shaping"]["focus"], max(focus, 0.0)), path, f"focus is not {focus}")
+    if cone is not None:
+        soft = "blend" if stage.blender else "softness"
+        same = near([cone["angle"], cone[soft]], [math.radians(angle), min(max(softness, 0.0), 1.0)])
+        found.check(same, path, f"has the cone {cone}, not {angle} degrees, {softness}")
+    else:
+        flat = light["kind"]["kind"] in ("rect", "disk")
+        found.check(softness <= 0 and angle >= (90 if flat else 180), path, f"lost its cone of {angle} degrees")
+
+
+def judge_cameras(stage, answer, found):
+    left = dict(answer.cameras)
+    for prim in stage.of_type("Camera"):
+        path, camera = str(prim.GetPath()), left.pop(str(prim.GetPath()), None)
+        if camera is None:
+            found.check(answer.warned(path), path, "is no camera, and nothing was said of it")
+            continue
+        expected = stage.camera(prim)
+        found.check(near(np.reshape(camera["matrix"], (4, 4)), stage.world(prim)), path, "stands elsewhere")
+        for key in ("clip_near", "clip_far", "shift", "shutter", "exposure"):
+            same = near(camera[key] if camera[key] is not None else math.inf, expected[key])
+            found.check(same or answer.warned(path), path, f"{key} is {camera[key]}, not {expected[key]}")
+        for key in ("projection", "lens"):
+            for name, value in (expected[key] or {}).items():
+                ours = (camera[key] or {}).get(name)
+                found.check(ours is not None and near(ours, value), path, f"{name} is {ours}, not {value}")
+        found.check(expected["lens"] is not None or camera["lens"] is None, path, "has a lens")
+
+
+@pytest.mark.skipif(not ASSETS.is_dir(), reason=f"{ASSETS} is not there")
+@pytest.mark.parametrize("path", STAGES, ids=lambda path: "/".join(path.parts[-3:]))
+def test_stages_are_read_as_openusd_reads_them(path):
+    if path.name in NOT_JUDGED:
+        pytest.skip(NOT_JUDGED[path.name])
+    try:
+        Stage(path)
+    except Tf.ErrorException as error:
+        pytest.skip(f"usd-core does not open it: {str(error).splitlines()[0]}")
+    found = judge(path)
+    assert not found, "\n".join(found[:20])
+
+
+HEAD = '#usda 1.0\n(\n    metersPerUnit = 0.1\n    upAxis = "Z"\n    startTimeCode = 3\n    endTimeCode = 9\n{}\n)\n'
+
+MESH = """
+    int[] faceVertexCounts = [4, 3]
+    int[] faceVertexIndices = [0, 1, 2, 3, 1, 4, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0.5), (0, 1, 0), (2, 0, 1)]
+    texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.25)] (interpolation = "vertex")
+    uniform token subdivisionScheme = "none"
+"""
+
+
+
+def material(path):
+    return f"""
+    def Material "{path.split("/")[-1]}" {{
+        token outputs:surface.connect = <{path}/Shader.outputs:surface>
+        def Shader "Shader" {{
+            uniform token info:id = "UsdPreviewSurface"
+            token outputs:surface
+        }}
+    }}
+    """
+
+
+CASES = {
+    "composition": {
+        "root.usda": HEAD.format("    subLayers = [@over.usda@ (offset = 2; scale = 0.5), @base.usda@]")
+        + """
+        def Xform "Instances" {
+            def "A" (instanceable = true; references = @asset.usda@) {
+                double3 xformOp:translate = (1, 2, 3)
+                uniform token[] xformOpOrder = ["xformOp:translate"]
+            }
+            def "B" (instanceable = true; references = @asset.usda@; variants = { string shape = "tall" }) {
+                float xformOp:rotateY = 30
+                uniform token[] xformOpOrder = ["xformOp:rotateY"]
+            }
+            def "C" (payload = @asset.usda@</Asset/Geo> (offset = -3)) {}
+        }
+        class "_Kind" { token visibility = "invisible" }
+        def Mesh "Hidden" (inherits = </_Kind>) {""" + MESH + """}
+        def Mesh "Special" (specializes = </_Kind>) { token visibility = "inherited"; """ + MESH + """}
+        def Scope "Guides" { token purpose = "guide"
+            def Mesh "Guide" {""" + MESH + """}
+            def Mesh "Shown" { token purpose = "render"; """ + MESH + """}
+        }
+        """,
+        "over.usda": """#usda 1.0
+        over "World" { double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 10: (10, 0, 0) } }
+        """,
+        "base.usda": """#usda 1.0
+        def Xform "World" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+            double3 xformOp:translate = (5, 5, 5)
+            double3 xformOp:rotateXYZ = (10, 20, 30)
+            float3 xformOp:scale = (1, 2, 3)
+            uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateXYZ", "xformOp:scale"]
+            rel material:binding = </Looks/Red> (bindMaterialAs = "strongerThanDescendants")
+            texCoord2f[] primvars:st = [(0.25, 0.5)] (interpolation = "constant")
+            def Mesh "Left" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+                uniform token orientation = "leftHanded"
+                rel material:binding = </Looks/Blue>
+                int[] faceVertexCounts = [3]
+                int[] faceVertexIndices = [0, 1, 2]
+                point3f[] points.timeSamples = { 1: [(0, 0, 0), (1, 0, 0), (0, 1, 0)], 5: [(0, 0, 0), (3, 0, 0), (0, 1, 0)] }
+                uniform token subdivisionScheme = "none"
+            }
+            def Mesh "Free" { bool reset = 1; uniform token[] xformOpOrder = ["!resetXformStack!"]
+        """ + MESH + """}
+        }
+        def Scope "Looks" {""" + material("/Looks/Red") + material("/Looks/Blue") + "}",
+        "asset.usda": """#usda 1.0
+        ( defaultPrim = "Asset" )
+        def Xform "Asset" (variantSets = "shape"; variants = { string shape = "flat" }) {
+            def Xform "Geo" {
+                def Mesh "Faces" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+                    rel material:binding = </Asset/Looks/Green>
+        """ + MESH + """
+                    def GeomSubset "Some" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+                        uniform token elementType = "face"
+                        uniform token familyName = "materialBind"
+                        int[] indices = [1]
+                        rel material:binding = </Asset/Looks/White>
+                    }
+                }
+            }
+            def Scope "Looks" {""" + material("/Asset/Looks/Green") + material("/Asset/Looks/White") + """}
+            variantSet "shape" = {
+                "flat" {}
+                "tall" { over "Geo" { float3 xformOp:scale = (1, 1, 7); uniform token[] xformOpOrder = ["xformOp:scale"] } }
+            }
+        }
+        """,
+    },
+    "instancer": {
+        "root.usda": HEAD.format("")
+        + """
+        def PointInstancer "Many" {
+            double3 xformOp:translate = (0, 3, 0)
+            uniform token[] xformOpOrder = ["xformOp:translate"]
+            int[] protoIndices = [0, 1, 0, 1, 0]
+            int64[] ids = [10, 11, 12, 13, 14]
+            int64[] invisibleIds = [13]
+            point3f[] positions = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0), (4, 0, 0)]
+            quath[] orientations = [(1, 0, 0, 0), (0.7071, 0, 0.7071, 0), (0, 1, 0, 0), (1, 0, 0, 0), (0.5, 0.5, 0.5, 0.5)]
+            float3[] scales = [(1, 1, 1), (2, 1, 1), (1, 3, 1), (1, 1, 1), (1, 1, 0.5)]
+            rel prototypes = [</Many/Flat>, </Many/Group>]
+            def Mesh "Flat" { float xformOp:rotateX = 45; uniform token[] xformOpOrder = ["xformOp:rotateX"]
+        """ + MESH + """}
+            def Xform "Group" { def Xform "Up" {
+                double3 xformOp:translate = (0, 0, 1)
+                uniform token[] xformOpOrder = ["xformOp:translate"]
+                def Mesh "Leaf" {""" + MESH + """}
+            } }
+        }
+        """,
+    },
+    "lights": {
+        "root.usda": HEAD.format("")
+        + """
+        def Xform "Rig" {
+            float3 xformOp:scale = (2, 2, 2)
+            float xformOp:rotateZ.timeSamples = { 0: 0, 10: 90 }
+            uniform token[] xformOpOrder = ["xformOp:rotateZ", "xformOp:scale"]
+            def SphereLight "Sphere" (prepend apiSchemas = ["ShapingAPI"]) {
+                float inputs:intensity.timeSamples = { 0: 1, 10: 11 }
+                bool inputs:normalize = 1
+                float inputs:shaping:cone:angle = 35
+                float inputs:shaping:cone:softness = 0.2
+                float inputs:shaping:focus = 2
+            }
+            def SphereLight "Point" { bool treatAsPoint = 1; float inputs:radius = 0.1; float inputs:exposure = 3 }
+            def RectLight "Rect" {
+                float3 xformOp:scale = (1, 3, 1)
+                uniform token[] xformOpOrder = ["xformOp:scale"]
+                float inputs:width = 4
+                bool inputs:normalize = 1
+                bool inputs:enableColorTemperature = 1
+                float inputs:colorTemperature = 4321
+            }
+            def DiskLight "Disk" { bool inputs:normalize = 1 }
+            def CylinderLight "Tube" { bool inputs:normalize = 1; float inputs:length = 3 }
+            def DistantLight "Sun" { bool inputs:normalize = 1; float inputs:intensity = 3 }
+            def DistantLight "Wide" { float inputs:angle = 60 }
+            def DistantLight "Sharp" { float inputs:angle = 0 }
+            def DomeLight "Dome" { float xformOp:rotateX = 30; uniform token[] xformOpOrder = ["xformOp:rotateX"] }
+            def DomeLight_1 "Pole" { float xformOp:rotateX = 30; uniform token[] xformOpOrder = ["xformOp:rotateX"] }
+            def SphereLight "Off" { token visibility = "invisible" }
+            def Camera "Cam" {
+                float horizontalApertureOffset = 3
+                float verticalApertureOffset = -2
+                float fStop = 4
+                float focusDistance = 70
+                float exposure = 1.5
+                float exposure:iso = 400
+                float focalLength.timeSamples = { 0: 20, 10: 70 }
+            }
+            def Camera "Flat" { token projection = "orthographic"; float2 clippingRange = (0.5, 60) }
+        }
+        """,
+    },
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("frame", [None, 4.5, 9])
+def test_cases_are_read_as_openusd_reads_them(tmp_path, name, frame):
+    for file, text in CASES[name].items():
+        # One statement a line, as usda wants it.
+        (tmp_path / file).write_text(text.replace("{ ", "{\n").replace("} ", "}\n").replace(" }", "\n}"))
+    args = [] if frame is None else ["--frame", frame]
+    found = judge(tmp_path / "root.usda", *args, frame=frame)
+    assert not found, "\n".join(found)
+
+
+EXPORT = """
+import sys
+import bpy
+
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+
+
+def put(name, data, **at):
+    thing = bpy.data.objects.new(name, data)
+    scene.collection.objects.link(thing)
+    for key, value in at.items():
+        setattr(thing, key, value)
+
+
+def lamp(name, kind, at={}, **values):
+    data = bpy.data.lights.new(name, kind)
+    for key, value in values.items():
+        setattr(data, key, value)
+    put(name, data, **at)
+
+
+lamp("point", "POINT", {"scale": (2, 2, 2), "location": (1, 2, 3)}, energy=100, shadow_soft_size=0.3)
+lamp("pin", "POINT", energy=100, shadow_soft_size=0)
+lamp("spot", "SPOT", energy=50, shadow_soft_size=0.1, spot_size=1.0, spot_blend=0.3)
+lamp("sun", "SUN", {"rotation_euler": (0.3, 0.2, 0.1)}, energy=3, angle=0.2)
+lamp("area", "AREA", {"scale": (1, 2, 1)}, energy=20, shape="RECTANGLE", size=2, size_y=0.5)
+lamp("disk", "AREA", energy=20, shape="DISK", size=2)
+camera = bpy.data.cameras.new("camera")
+camera.shift_x, camera.shift_y = 0.1, 0.2
+camera.dof.use_dof, camera.dof.focus_distance, camera.dof.aperture_fstop = True, 4, 2
+put("camera", camera, location=(0, -5, 1), rotation_euler=(1.4, 0, 0.2))
+bpy.ops.mesh.primitive_monkey_add(location=(0, 1, 2), rotation=(0.1, 0.2, 0.3))
+monkey = bpy.context.object
+for name in ("red", "blue"):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    monkey.data.materials.append(material)
+for i, face in enumerate(monkey.data.polygons):
+    face.material_index = i % 2
+world = bpy.data.worlds.new("world")
+scene.world, world.use_nodes = world, True
+image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
+image.filepath_raw, image.file_format = sys.argv[-1] + "/sky.exr", "OPEN_EXR"
+image.save()
+nodes, links = world.node_tree.nodes, world.node_tree.links
+nodes.clear()
+sky, background, out = (nodes.new("ShaderNode" + n) for n in ("TexEnvironment", "Background", "OutputWorld"))
+sky.image = image
+links.new(sky.outputs[0], background.inputs[0])
+links.new(background.outputs[0], out.inputs[0])
+bpy.ops.wm.usd_export(filepath=sys.argv[-1] + "/m.usda")
+bpy.ops.wm.usd_export(filepath=sys.argv[-1] + "/cm.usdc", convert_scene_units="CENTIMETERS")
+bpy.ops.wm.usd_export(filepath=sys.argv[-1] + "/y.usda", convert_orientation=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def blender(tmp_path_factory):
+    """A folder of stages that Blender wrote, by a process of its own: Blender brings a USD of its own."""
+    pytest.importorskip("bpy")
+    folder = tmp_path_factory.mktemp("blender")
+    done = subprocess.run([sys.executable, "-c", EXPORT, str(folder)], capture_output=True, text=True)
+    assert (folder / "y.usda").exists(), done.stdout + done.stderr
+    return folder
+
+
+@pytest.mark.parametrize("file", ["m.usda", "cm.usdc", "y.usda"])
+def test_what_blender_wrote_is_read_as_openusd_reads_it(blender, file):
+    found = judge(blender / file)
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("file", ["m.usda", "cm.usdc", "y.usda"])
+def test_blenders_lamps_come_back_as_cycles_has_them(blender, file):
+    """Cycles: I = P / 4π of a point, L = P / 4π²r² of a sphere, P / πA of an area, E = S of a sun."""
+    lights = {light["name"]: light["kind"] for light in read(blender / file)["values"]["lights"]}
+    value = lambda name, key="radiance": lights[name][key][0] if isinstance(lights[name][key], list) else lights[name][key]
+    pi = math.pi
+    expected = {
+        ("point", "radius"): 0.3,
+        ("point", "radiance"): 100 / (4 * pi**2 * 0.09),
+        ("pin", "intensity"): 100 / (4 * pi),
+        ("spot", "radiance"): 50 / (4 * pi**2 * 0.01),
+        ("sun", "irradiance"): 3.0,
+        ("sun", "angle"): 0.2,
+        ("area", "width"): 2.0,
+        ("area", "height"): 1.0,
+        ("area", "radiance"): 20 / (pi * 2.0),
+        ("disk", "radiance"): 20 / (pi * pi),
+    }
+    for (name, key), number in expected.items():
+        assert value(name, key) == pytest.approx(number, rel=1e-5), (name, key)
+
+
+@pytest.mark.parametrize("up", ["Y", "Z"])
+@pytest.mark.parametrize("dome", ["DomeLight", "DomeLight_1"])
+def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
+    """OpenEXR's lat-long maps: u = 0.5 - lon / 2 pi, v = 0.5 + lat / pi, lon = atan2(x, z), lat = asin(y)."""
+    oiio = pytest.importorskip("OpenImageIO")
+    width, height, column, row = 64, 32, 10, 8
+    pixels = np.full((height, width, 3), 0.01, np.float32)
+    pixels[row, column] = [0.0, 9.0, 0.0]
+    spec = oiio.ImageSpec(width, height, 3, "float")
+    image = oiio.ImageOutput.create(str(tmp_path / "sky.exr"))
+    assert image.open(str(tmp_path / "sky.exr"), spec) and image.write_image(pixels) and image.close()
+    lon = 2 * math.pi * (0.5 - (column + 0.5) / width)
+    lat = math.pi * (0.5 - (row + 0.5) / height)
+    toward = np.array([math.cos(lat) * math.sin(lon), math.sin(lat), math.cos(lat) * math.cos(lon)])
+    if dome == "DomeLight_1" and up == "Z":
+        toward = np.array([toward[0], -toward[2], toward[1]])
+    # About z by 40 degrees, with the light.
+    sin, cos = math.sin(math.radians(40)), math.cos(math.radians(40))
+    toward = np.array([cos * toward[0] - sin * toward[1], sin * toward[0] + cos * toward[1], toward[2]])
+    right = np.cross(toward, [0.3, 0.5, 0.8])
+    right /= np.linalg.norm(right)
+    axes = np.array([right, np.cross(right, toward), -toward])
+    matrix = ", ".join("({}, {}, {}, 0)".format(*axis) for axis in axes)
+    (tmp_path / "dome.usda").write_text(
+        f"""#usda 1.0
+        ( upAxis = "{up}" )
+        def {dome} "Sky" {{
+            asset inputs:texture:file = @./sky.exr@
+            float xformOp:rotateZ = 40
+            uniform token[] xformOpOrder = ["xformOp:rotateZ"]
+        }}
+        def Camera "Cam" {{
+            float horizontalAperture = 20
+            float verticalAperture = 20
+            matrix4d xformOp:transform = ( {matrix}, (0, 0, 0, 1) )
+            uniform token[] xformOpOrder = ["xformOp:transform"]
+        }}
+        """
+    )
+    out = tmp_path / "out.exr"
+    command = [PENUMBRA, "render", tmp_path / "dome.usda", "-o", out, "--size", "33x33", "--spp", "1"]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    picture = oiio.ImageInput.open(str(out)).read_image(0, 0, 0, 3, oiio.FLOAT)
+    rows, columns = np.nonzero(picture[..., 1] > 0.5 * picture[..., 1].max())
+    assert picture[16, 16, 1] > 6 and abs(rows.mean() - 16) < 1.5 and abs(columns.mean() - 16) < 1.5

@@ -1,0 +1,255 @@
+"""What OpenUSD says of a stage, in the space and units of `penumbra info --json --values`: y up, metres.
+
+Matrices are those of USD, for row vectors: the rows are the images of the axes and of the origin.
+"""
+
+import math
+
+import numpy as np
+from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, Vt
+
+Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
+LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
+
+
+class Stage:
+    """A stage at the time at which Penumbra reads it."""
+
+    def __init__(self, path, frame=None):
+        self.stage = Usd.Stage.Open(str(path))
+        ranged = self.stage.HasAuthoredTimeCodeRange()
+        if frame is not None:
+            self.time = Usd.TimeCode(frame)
+        else:
+            self.time = Usd.TimeCode(self.stage.GetStartTimeCode()) if ranged else Usd.TimeCode.EarliestTime()
+        meters = UsdGeom.GetStageMetersPerUnit(self.stage)
+        self.meters = meters if 0 < meters < math.inf else 0.01
+        self.z_up = UsdGeom.GetStageUpAxis(self.stage) == "Z"
+        self.to_world = np.diag([self.meters] * 3 + [1.0]) @ (Z_UP_TO_Y_UP if self.z_up else np.eye(4))
+        self.xforms = UsdGeom.XformCache(self.time)
+        self.blender = self.stage.GetRootLayer().documentation.startswith("Blender v")
+
+    def world(self, prim):
+        return np.array(self.xforms.GetLocalToWorldTransform(prim)) @ self.to_world
+
+    def visible(self, prim):
+        imageable = UsdGeom.Imageable(prim)
+        if not imageable:
+            return False
+        invisible = imageable.ComputeVisibility(self.time) == UsdGeom.Tokens.invisible
+        return not invisible and imageable.ComputePurpose() not in (UsdGeom.Tokens.proxy, UsdGeom.Tokens.guide)
+
+    def prims(self):
+        """All that can be seen; what is in a point instancer is seen through it alone."""
+        walk = iter(Usd.PrimRange.Stage(self.stage, Usd.TraverseInstanceProxies()))
+        for prim in walk:
+            if prim.IsA(UsdGeom.PointInstancer):
+                walk.PruneChildren()
+            yield prim
+
+    def of_type(self, *types):
+        return [prim for prim in self.prims() if prim.GetTypeName() in types]
+
+    def gprims(self):
+        return [prim for prim in self.prims() if prim.IsA(UsdGeom.Gprim) and self.visible(prim)]
+
+    def bound(self, prim):
+        """The material that is bound to `prim`, if it has a surface."""
+        material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial(UsdShade.Tokens.full)[0]
+        return material.GetPrim() if material and self.has_surface(material) else None
+
+    def has_surface(self, material):
+        material = UsdShade.Material(material)
+        return bool(material) and any(material.ComputeSurfaceSource(context)[0] for context in ("mtlx", ""))
+
+    # Meshes
+
+    def faces(self, prim):
+        """Points, and for each face that is there its number and the indices of its corners; `None` where
+        the counts don't fit."""
+        mesh = UsdGeom.Mesh(prim)
+        get = lambda attribute, dtype: np.array(attribute.Get(self.time) or [], dtype=dtype)
+        points = mesh.GetPointsAttr().Get(self.time)
+        if points is not None and not isinstance(points, Vt.Vec3fArray):
+            return None
+        points = np.array(points or [], np.float32).reshape(-1, 3)
+        counts, indices = get(mesh.GetFaceVertexCountsAttr(), int), get(mesh.GetFaceVertexIndicesAttr(), int)
+        if counts.sum() != len(indices) or (len(indices) and not (0 <= indices.min() and indices.max() < len(points))):
+            return None
+        smooth = mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none
+        holes = set(get(mesh.GetHoleIndicesAttr(), int)) if smooth else set()
+        ends = np.cumsum(counts)
+        kept = [(i, indices[ends[i] - n : ends[i]]) for i, n in enumerate(counts) if n >= 3 and i not in holes]
+        return points, kept
+
+    def uv_corners(self, prim, faces):
+        """`st` of every corner of `faces`; `None` where there is none that fits."""
+        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("st")
+        values = primvar.ComputeFlattened(self.time) if primvar else None
+        values = np.array(values if values is not None else [], dtype=np.float32)
+        if values.ndim != 2 or values.shape[1] != 2:
+            return None
+        counts = UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(self.time)
+        starts = np.concatenate([[0], np.cumsum(counts)])
+        pick = {
+            "constant": lambda face, corners: np.zeros(len(corners), int),
+            "uniform": lambda face, corners: np.full(len(corners), face),
+            "vertex": lambda face, corners: corners,
+            "varying": lambda face, corners: corners,
+            "faceVarying": lambda face, corners: np.arange(starts[face], starts[face + 1]),
+        }[primvar.GetInterpolation()]
+        picked = np.concatenate([pick(face, corners) for face, corners in faces] or [np.zeros(0, int)])
+        return values[picked] if len(picked) == 0 or picked.max() < len(values) else None
+
+    def materials(self, prim, faces):
+        """The materials that the faces of a mesh have."""
+        left = {face for face, _ in faces}
+        found = set()
+        for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
+            inside = left & set(subset.GetIndicesAttr().Get(self.time) or [])
+            left -= inside
+            if inside:
+                found.add(self.bound(subset.GetPrim()) or self.bound(prim))
+        if left:
+            found.add(self.bound(prim))
+        return {material for material in found if material}
+
+    # Point instancers
+
+    def instanced(self):
+        """The world matrix of every gprim that point instancers show; `None` where they are nested."""
+        matrices = []
+        for prim in self.of_type("PointInstancer"):
+            if not self.visible(prim):
+                continue
+            instancer = UsdGeom.PointInstancer(prim)
+            count = len(instancer.GetProtoIndicesAttr().Get(self.time) or [])
+            places = instancer.ComputeInstanceTransformsAtTime(
+                self.time, self.time, UsdGeom.PointInstancer.IncludeProtoXform, UsdGeom.PointInstancer.IgnoreMask
+            )
+            if len(places) != count:
+                continue
+            mask = instancer.ComputeMaskAtTime(self.time) or [True] * count
+            prototypes = [self.stage.GetPrimAtPath(path) for path in instancer.GetPrototypesRel().GetForwardedTargets()]
+            for index, place, shown in zip(instancer.GetProtoIndicesAttr().Get(self.time), places, mask):
+                if not shown or not 0 <= index < len(prototypes) or not prototypes[index]:
+                    continue
+                root = prototypes[index]
+                from_root = np.linalg.inv(np.array(self.xforms.GetLocalToWorldTransform(root)))
+                for inner in Usd.PrimRange(root, Usd.TraverseInstanceProxies(Usd.PrimIsActive)):
+                    if inner.IsA(UsdGeom.PointInstancer):
+                        return None
+                    if inner.IsA(UsdGeom.Gprim) and self.visible(inner):
+                        local = np.array(self.xforms.GetLocalToWorldTransform(inner)) @ from_root
+                        matrices.append(local @ np.array(place) @ self.world(prim))
+        return matrices
+
+    # Lights
+
+    def light(self, prim):
+        """Kind, sizes and emission by the formulas of UsdLux's documentation; without its transform."""
+        get = lambda name: prim.GetAttribute(name).Get(self.time)
+        api = UsdLux.LightAPI(prim)
+        value = lambda attribute: attribute.Get(self.time)
+        emission = np.array(value(api.GetColorAttr()), dtype=float)
+        emission *= value(api.GetIntensityAttr()) * 2.0 ** value(api.GetExposureAttr())
+        kelvin = value(api.GetColorTemperatureAttr())
+        if value(api.GetEnableColorTemperatureAttr()) and not (self.blender and kelvin == 6500):
+            emission *= np.array(UsdLux.BlackbodyTemperatureAsRgb(kelvin))
+        normalize, kind = value(api.GetNormalizeAttr()), prim.GetTypeName()
+        if kind in ("DomeLight", "DomeLight_1"):
+            return {"kind": "dome", "radiance": emission}
+        if kind == "DistantLight":
+            half = min(max(math.radians(get("inputs:angle")) / 2, 0), math.pi)
+            if self.blender:
+                half, emission = 2 * half, 4 * emission
+            size = math.pi * math.sin(half) ** 2 if half else 1.0
+            return {"kind": "distant", "irradiance": emission * (1.0 if normalize else size), "angle": 2 * half}
+        matrix = self.world(prim)
+        x, y, z = (np.linalg.norm(matrix[i, :3]) for i in range(3))
+        unit = 1.0 if self.blender else self.meters
+        found, area = {}, 0.0
+        if kind == "SphereLight":
+            # Its object's scale is no scale of Blender's lamp.
+            root = np.array(self.xforms.GetLocalToWorldTransform(self.root(prim)))
+            scale = np.linalg.norm(root[0, :3]) * self.meters if self.blender else (x * y * z) ** (1 / 3)
+            radius = get("inputs:radius") * scale
+            area = 4 * math.pi * radius**2
+            if get("treatAsPoint") or radius == 0:
+                factor = unit**2 / 4 if normalize else math.pi * radius**2
+                if self.blender and radius == 0 and not normalize:
+                    factor = 1.0
+                return {"kind": "point", "intensity": emission * factor}
+            found = {"kind": "sphere", "radius": radius}
+        elif kind == "DiskLight":
+            width, height = 2 * get("inputs:radius") * x, 2 * get("inputs:radius") * y
+            area = math.pi / 4 * width * height
+            found = {"kind": "disk", "width": width, "height": height}
+        elif kind == "RectLight":
+            width, height = get("inputs:width") * x, get("inputs:height") * y
+            area = width * height
+            found = {"kind": "rect", "width": width, "height": height}
+        elif kind == "CylinderLight":
+            radius, length = get("inputs:radius") * math.sqrt(y * z), get("inputs:length") * x
+            area = 2 * math.pi * radius * length
+            found = {"kind": "cylinder", "radius": radius, "length": length}
+        found["radiance"] = emission * (unit**2 / area if normalize else 1.0)
+        return found
+
+    def root(self, prim):
+        return self.stage.GetPrimAtPath(prim.GetPath().GetPrefixes()[0])
+
+    def dome_directions(self, prim):
+        """Where the image's centre, left quarter and top are in the world (OpenEXR's lat-long maps)."""
+        center, left, top = np.eye(3)[[2, 0, 1]]
+        pole = prim.GetAttribute("poleAxis").Get() if prim.GetTypeName() == "DomeLight_1" else "Y"
+        if pole == "Z" or (pole == "scene" and self.z_up):
+            center, top = -np.eye(3)[1], np.eye(3)[2]
+        local = np.array(UsdGeom.Xformable(prim).GetLocalTransformation(self.time))
+        if self.blender and np.allclose(local, np.eye(4)):
+            # Blender 5.0 leaves out the rotation that 4.5 writes: (90, 0, 90).
+            center, left, top = np.eye(3)[[0, 1, 2]]
+        directions = np.array([center, left, top]) @ self.world(prim)[:3, :3]
+        return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+    def shaping(self, prim):
+        """Cone angle and softness, focus; `None` where ShapingAPI is not applied."""
+        if not prim.HasAPI(UsdLux.ShapingAPI):
+            return None
+        api = UsdLux.ShapingAPI(prim)
+        cone = api.GetShapingConeAngleAttr().Get(self.time), api.GetShapingConeSoftnessAttr().Get(self.time)
+        return *cone, api.GetShapingFocusAttr().Get(self.time)
+
+    # Cameras
+
+    def camera(self, prim):
+        camera = UsdGeom.Camera(prim)
+        gf = camera.GetCamera(self.time)
+        tenth = 0.1 * self.meters
+        found = {
+            "clip_near": gf.clippingRange.min * self.meters,
+            "clip_far": gf.clippingRange.max * self.meters,
+            "shift": [
+                gf.horizontalApertureOffset / gf.horizontalAperture,
+                gf.verticalApertureOffset / gf.verticalAperture,
+            ],
+            "shutter": [camera.GetShutterOpenAttr().Get(self.time), camera.GetShutterCloseAttr().Get(self.time)],
+            "exposure": camera.ComputeLinearExposureScale(self.time),
+        }
+        if gf.projection == Gf.Camera.Perspective:
+            found["projection"] = {
+                "fov_y": math.radians(gf.GetFieldOfView(Gf.Camera.FOVVertical)),
+                "aspect": gf.aspectRatio,
+            }
+        else:
+            found["projection"] = {
+                "half_width": 0.5 * gf.horizontalAperture * tenth,
+                "half_height": 0.5 * gf.verticalAperture * tenth,
+            }
+        found["lens"] = None
+        if gf.fStop > 0 and gf.focusDistance > 0:
+            found["lens"] = {
+                "aperture_radius": 0.5 * gf.focalLength * tenth / gf.fStop,
+                "focus_distance": gf.focusDistance * self.meters,
+            }
+        return found
