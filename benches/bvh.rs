@@ -1,6 +1,6 @@
 //! Rays per second on one thread, ours and Embree's, with the same rays in the same process.
 //!
-//! `cargo bench --bench bvh -- [--mesh NAME] [--set NAME] [--isa NAME|all] [--rounds N]
+//! `cargo bench --ignore-rust-version --bench bvh -- [--mesh NAME] [--set NAME] [--isa NAME|all] [--rounds N]
 //! [--embree LIBRARY] [--robust] [--no-build]`
 //!
 //! Both shoot each set in turn, round after round; the ratio is the median of the rounds' ratios,

@@ -1,7 +1,7 @@
 //! The choice among many lights: noise and cost of the tree, of choice by power and of uniform choice,
 //! and the time that whole pictures take.
 //!
-//! `cargo bench --bench lights -- [quality] [cost] [mesh] [time]`; all without arguments.
+//! `cargo bench --ignore-rust-version --bench lights -- [quality] [cost] [mesh] [time]`; all without arguments.
 
 #![allow(unsafe_code)]
 

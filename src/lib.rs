@@ -1,7 +1,7 @@
 //! Penumbra: a production render engine for shadows, ambient occlusion and honest noise figures.
 //!
 //! ```text
-//! glTF file ──► SceneDesc ──prepare──► Scene ──integrator──► Film ──► EXR, PNG
+//! USD, glTF ──► SceneDesc ──prepare──► Scene ──integrator──► Film ──► EXR, PNG
 //! ```
 //!
 //! What an artist wrote ([`desc`]) and what is traced ([`scene`]) are different types; files and the

@@ -1,7 +1,7 @@
 """Direct light of Penumbra and of Cycles, case by case: means that agree, and the variance at equal samples.
 
     tests/run                                        # once: the Python environment with bpy and OpenImageIO
-    cargo build --release
+    cargo build --release --ignore-rust-version
     target/test-venv/bin/python benches/cycles/compare.py
 
 prints a table; `--cases sphere,dome` takes some of them, `--json FILE` writes every figure, `--help` lists the rest.

@@ -13,7 +13,7 @@
 //! Microfacet Models*, 2019, with the color of several bounces by Kulla and Conty 2017.
 //!
 //! The tables are `energy.bin`, 16 bits per value; the test `write_tables` makes them anew:
-//! `cargo test --release --lib write_tables -- --ignored`.
+//! `cargo test --release --ignore-rust-version --lib write_tables -- --ignored`.
 
 use crate::math::Rgb;
 

@@ -1,6 +1,6 @@
 """What other programs see in Penumbra's EXR files: OpenImageIO and Blender (image loader, compositor, Cryptomatte).
 
-`cargo test --test output` leaves readers.exr and readers_half.exr in target/tmp.
+`cargo test --ignore-rust-version --test output` leaves readers.exr and readers_half.exr in target/tmp.
 """
 
 import json
