@@ -113,4 +113,6 @@ pub(super) fn build(
 }
 
 #[cfg(test)]
+mod assets;
+#[cfg(test)]
 mod testing;
