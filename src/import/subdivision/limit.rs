@@ -2,8 +2,10 @@
 //! (M. Halstead, M. Kass, T. DeRose, "Efficient, fair interpolation using Catmull-Clark surfaces", 1993;
 //! H. Hoppe et al., "Piecewise smooth surface reconstruction", 1994).
 
+use rayon::prelude::*;
+
 use super::Scheme;
-use super::masks::{add, loop_weight, narrow};
+use super::masks::{TASK, add, loop_weight, narrow};
 use super::rules::{Rule, Rules};
 use super::topology::Topology;
 
@@ -15,11 +17,8 @@ pub(super) fn positions<const N: usize>(
     scheme: Scheme,
     values: &[[f32; N]],
 ) -> Vec<[f32; N]> {
-    values
-        .iter()
-        .enumerate()
-        .map(|(point, value)| limit(topology, &rules.points[point], scheme, values, point, value))
-        .collect()
+    let one = |(point, value)| limit(topology, &rules.points[point], scheme, values, point, value);
+    values.par_iter().with_min_len(TASK).enumerate().map(one).collect()
 }
 
 fn limit<const N: usize>(

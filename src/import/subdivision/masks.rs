@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use rayon::prelude::*;
+
 use super::Scheme;
 use super::rules::Rules;
 use super::topology::{NONE, Topology};
@@ -9,6 +11,9 @@ use super::topology::{NONE, Topology};
 /// Weight of a triangle's middle at the edge of a mesh whose triangles are smoothed, in place of 1/4
 /// (OpenSubdiv's `CATMARK_TRI_SUB_SMOOTH_WEIGHT`).
 const SMOOTH_TRIANGLE: f64 = 0.470;
+
+/// Values that a thread takes at once.
+pub(super) const TASK: usize = 4096;
 
 /// Adds `weight` times `value`.
 pub(super) fn add<const N: usize>(sum: &mut [f64; N], value: &[f32; N], weight: f64) {
@@ -58,19 +63,18 @@ pub(super) fn smooth<const N: usize>(
     if scheme == Scheme::Bilinear {
         return linear(topology, scheme, values);
     }
-    let mut next: Vec<[f32; N]> = Vec::with_capacity(topology.faces.len() + topology.edges.len() + values.len());
-    if scheme == Scheme::CatmullClark {
-        next.extend(middles(topology, values));
-    }
+    let faces = if scheme == Scheme::CatmullClark { topology.faces.len() } else { 0 };
+    let edges = topology.edges.len();
+    let mut next = vec![[0.0; N]; faces + edges + topology.points];
+    let (middles_of_faces, rest) = next.split_at_mut(faces);
+    middles_of_faces.iter_mut().zip(middles(topology, values)).for_each(|(slot, value)| *slot = value);
     let masks = Masks { topology, rules, scheme, smooth_triangles };
-    for edge in 0..topology.edges.len() {
-        let value = masks.edge(edge, values, &next);
-        next.push(value);
-    }
-    for point in 0..topology.points {
-        let value = masks.vertex(point, values, &next);
-        next.push(value);
-    }
+    rest.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(i, slot)| {
+        *slot = match i.checked_sub(edges) {
+            None => masks.edge(i, values, middles_of_faces),
+            Some(point) => masks.vertex(point, values, middles_of_faces),
+        };
+    });
     next
 }
 

@@ -153,19 +153,38 @@ impl Refinement {
     /// Values that move with the points: on the limit surface, one for each point of the last level.
     /// Without refinement they stay as they are.
     pub fn vertex<const N: usize>(&self, values: &[[f32; N]]) -> Vec<[f32; N]> {
-        if self.scheme == Scheme::Bilinear {
-            return self.linear(values);
-        }
+        self.push(self.smooth(values))
+    }
+
+    /// The points of the last level on the limit surface, and its unit normals there: one for each point
+    /// or, where creases part them, for each corner. `None` for surfaces that are flat in pieces.
+    pub fn surface(&self, points: &[[f32; 3]]) -> (Vec<[f32; 3]>, Option<Attribute<[f32; 3]>>) {
+        let points = self.smooth(points);
+        // The masks of the limit are those of quads and triangles; a cage may have other faces.
+        let regular = self.levels.len() > 1 || self.scheme == Scheme::Loop;
+        let Level { topology, rules } = self.last();
+        let normals = (self.scheme != Scheme::Bilinear)
+            .then(|| normals::of(topology, rules, regular.then_some(self.scheme), &points));
+        (self.push(points), normals)
+    }
+
+    /// Down to the last level.
+    fn smooth<const N: usize>(&self, values: &[[f32; N]]) -> Vec<[f32; N]> {
         let mut values = values.to_vec();
         for pair in self.levels.windows(2) {
             let Level { topology, rules } = &pair[0];
             values = smooth(topology, rules, self.scheme, self.smooth_triangles, &values);
         }
-        if self.levels.len() > 1 {
-            let Level { topology, rules } = self.last();
-            values = limit::positions(topology, rules, self.scheme, &values);
-        }
         values
+    }
+
+    /// From the last level to the limit.
+    fn push<const N: usize>(&self, values: Vec<[f32; N]>) -> Vec<[f32; N]> {
+        if self.levels.len() == 1 || self.scheme == Scheme::Bilinear {
+            return values;
+        }
+        let Level { topology, rules } = self.last();
+        limit::positions(topology, rules, self.scheme, &values)
     }
 
     /// Values of points that are linear along edges, one for each point of the last level.
@@ -203,20 +222,6 @@ impl Refinement {
             faces = topology.split(self.scheme).faces;
         }
         (values, Vec::new())
-    }
-
-    /// Unit normals of the limit surface, one for each point or, where creases part them, for each corner of
-    /// the last level. `points` are those of the cage.
-    pub fn normals(&self, points: &[[f32; 3]]) -> Attribute<[f32; 3]> {
-        let mut values = points.to_vec();
-        for pair in self.levels.windows(2) {
-            let Level { topology, rules } = &pair[0];
-            values = smooth(topology, rules, self.scheme, self.smooth_triangles, &values);
-        }
-        // The masks of the limit are those of quads and triangles; a cage may have other faces.
-        let regular = self.levels.len() > 1 || self.scheme == Scheme::Loop;
-        let Level { topology, rules } = self.last();
-        normals::of(topology, rules, regular.then_some(self.scheme), &values)
     }
 }
 

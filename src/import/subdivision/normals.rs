@@ -3,7 +3,10 @@
 
 use std::f64::consts::{PI, TAU};
 
+use rayon::prelude::*;
+
 use super::Scheme;
+use super::masks::TASK;
 use super::rules::{Kind, Rules};
 use super::topology::{NONE, Topology};
 use crate::desc::Attribute;
@@ -29,31 +32,14 @@ pub(super) fn of(
     values: &[[f32; 3]],
 ) -> Attribute<[f32; 3]> {
     let walk = Walk { topology, rules, values };
-    let mut sector = Sector::default();
     let mut points = vec![[0.0, 0.0, 1.0]; values.len()];
-    let mut parted: Vec<(usize, [f32; 3])> = Vec::new();
-    for (point, normal) in points.iter_mut().enumerate() {
-        let center = at(values, point);
-        let kind = rules.points[point].kind;
-        // A single sharp edge ends here and parts nothing.
-        let is_start = |corner: &usize| kind != Kind::Smooth && walk.is_sharp(*corner);
-        let mut starts = topology.around(point).filter(is_start).peekable();
-        if starts.peek().is_none() {
-            let Some(corner) = topology.around(point).next() else { continue };
-            walk.gather(corner, false, &mut sector);
-            *normal = sector.normal(center, kind, scheme);
-            continue;
-        }
-        for (i, start) in starts.enumerate() {
-            walk.gather(start, true, &mut sector);
-            let value = sector.normal(center, kind, scheme);
-            if i == 0 {
-                *normal = value;
-            } else {
-                parted.extend(sector.corners.iter().map(|&corner| (corner, value)));
-            }
-        }
-    }
+    let parted: Vec<(usize, [f32; 3])> = points
+        .par_iter_mut()
+        .with_min_len(TASK)
+        .enumerate()
+        .map_init(Sector::default, |sector, (point, normal)| walk.normals(point, scheme, sector, normal))
+        .flatten_iter()
+        .collect();
     if parted.is_empty() {
         return Attribute::Point(points);
     }
@@ -74,6 +60,39 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// The normal at `point`, and those of the corners that have another.
+    fn normals(
+        &self,
+        point: usize,
+        scheme: Option<Scheme>,
+        sector: &mut Sector,
+        normal: &mut [f32; 3],
+    ) -> Vec<(usize, [f32; 3])> {
+        let mut parted = Vec::new();
+        let center = at(self.values, point);
+        let kind = self.rules.points[point].kind;
+        // A single sharp edge ends here and parts nothing.
+        let is_start = |corner: &usize| kind != Kind::Smooth && self.is_sharp(*corner);
+        let mut starts = self.topology.around(point).filter(is_start).peekable();
+        if starts.peek().is_none() {
+            if let Some(corner) = self.topology.around(point).next() {
+                self.gather(corner, false, sector);
+                *normal = sector.normal(center, kind, scheme);
+            }
+            return parted;
+        }
+        for (i, start) in starts.enumerate() {
+            self.gather(start, true, sector);
+            let value = sector.normal(center, kind, scheme);
+            if i == 0 {
+                *normal = value;
+            } else {
+                parted.extend(sector.corners.iter().map(|&corner| (corner, value)));
+            }
+        }
+        parted
+    }
+
     /// What is less sharp is round at the size of the faces.
     fn is_sharp(&self, half: usize) -> bool {
         self.topology.twins[half] == NONE || self.rules.edges[self.topology.edge_of[half] as usize] >= 1.0

@@ -49,7 +49,7 @@ fn a_cube_has_its_closed_form_at_every_level() {
         let refinement = Refinement::new(cage(&CUBE_FACES, 8), depth);
         assert_eq!(refinement.faces().len(), 6 * 4usize.pow(depth));
         let points = refinement.vertex(&CUBE);
-        let Attribute::Point(normals) = refinement.normals(&CUBE) else { panic!("no edge is sharp") };
+        let Some(Attribute::Point(normals)) = refinement.surface(&CUBE).1 else { panic!("no edge is sharp") };
         // Valence 3: (9 v + 4 Σe + Σf) / 24 with Σe = v and Σf = −v.
         for (i, p) in CUBE.iter().enumerate() {
             assert_close(vertex(&points, 8, i), p.map(|v| v / 2.0));
@@ -86,7 +86,7 @@ fn a_cube_of_sharp_edges_stays_one() {
     for p in &points {
         assert!((p.iter().fold(0.0f32, |m, v| m.max(v.abs())) - 1.0).abs() < 1e-6, "{p:?}");
     }
-    let Attribute::Corner(normals) = refinement.normals(&CUBE) else { panic!("edges are sharp") };
+    let Some(Attribute::Corner(normals)) = refinement.surface(&CUBE).1 else { panic!("edges are sharp") };
     for (corner, n) in normals.iter().enumerate() {
         assert!((n.iter().fold(0.0f32, |m, v| m.max(v.abs())) - 1.0).abs() < 1e-6, "{n:?}");
         let p = Vec3::from(points[refinement.faces().corners[corner] as usize]);
@@ -103,7 +103,7 @@ fn the_rim_of_a_square_is_a_spline() {
         let limit = smooth.vertex(&points);
         // A closed cubic B-spline: (4 v + e0 + e1) / 6.
         assert_close(vertex(&limit, 4, 2), [2.0 / 3.0, 2.0 / 3.0, 0.0]);
-        let Attribute::Point(normals) = smooth.normals(&points) else { panic!() };
+        let Some(Attribute::Point(normals)) = smooth.surface(&points).1 else { panic!() };
         normals.iter().for_each(|&n| assert_close(n, [0.0, 0.0, 1.0]));
         let sharp = Refinement::new(cage(&list, 4), depth);
         let limit = sharp.vertex(&points);
@@ -125,7 +125,7 @@ fn an_octahedron_has_loops_closed_form() {
         let refinement = Refinement::new(Cage { scheme: Scheme::Loop, ..cage(&list, 6) }, depth);
         assert_eq!(refinement.faces().len(), 8 * 4usize.pow(depth));
         let limit = refinement.vertex(&points);
-        let Attribute::Point(normals) = refinement.normals(&points) else { panic!() };
+        let Some(Attribute::Point(normals)) = refinement.surface(&points).1 else { panic!() };
         for (i, p) in points.iter().enumerate() {
             // Valence 4: 1 − 4χ with χ = 1 / (3 / (8β) + 4), β = (5/8 − (3/8)²) / 4.
             let share = if depth == 0 { 1.0 } else { 24.0 / 55.0 };
@@ -269,7 +269,7 @@ fn broken_topology_is_survived() {
             let indices: Vec<u32> = (0..20).collect();
             let (values, at) = refinement.face_varying(&uvs, &indices);
             assert!(at.iter().all(|&i| (i as usize) < values.len()));
-            refinement.normals(&points);
+            refinement.surface(&points).1;
         }
     }
 }

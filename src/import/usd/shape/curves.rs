@@ -34,6 +34,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
     let mut counts: Vec<i32> = reading.value(prim, "curveVertexCounts").unwrap_or_default();
     let token = |name: &str| reading.value::<Token>(prim, name);
     let (mut basis, mut wrap) = (Basis::Linear, Wrap::Open);
+    let mut from_hermite = false;
     match kind {
         "BasisCurves" => {
             let is_linear = token("type").is_some_and(|kind| kind == "linear");
@@ -58,7 +59,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
             match tangents.map(|data| data.values).filter(|tangents| tangents.len() == points.len()) {
                 Some(tangents) => {
                     (points, counts) = as_bezier(&points, &tangents, &counts);
-                    basis = Basis::Bezier;
+                    (basis, from_hermite) = (Basis::Bezier, true);
                 }
                 None => {
                     reading.warn(prim.path(), "the curves need a tangent for each point; they are straight instead")
@@ -72,15 +73,22 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         return None;
     }
     let mut primvars = primvar::read(reading, prim, inherited);
-    let widths = points::widths(reading, prim, &mut primvars);
+    let mut widths = points::widths(reading, prim, &mut primvars);
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
+    }
+    if from_hermite {
+        // The points are the ends of the pieces.
+        widths.iter_mut().for_each(Data::at_joints);
+        primvars.uvs.iter_mut().for_each(Data::at_joints);
+        primvars.normals.iter_mut().for_each(Data::at_joints);
+        primvars.color.iter_mut().for_each(Data::at_joints);
+        primvars.opacity.iter_mut().for_each(Data::at_joints);
     }
     Some(Curves { points, counts, basis, wrap, widths, primvars })
 }
 
-/// Cubic pieces between points with tangents. Values of points go to those of the same curve at the ends of
-/// pieces.
+/// Cubic pieces between points with tangents.
 fn as_bezier(points: &[[f32; 3]], tangents: &[[f32; 3]], counts: &[i32]) -> (Vec<[f32; 3]>, Vec<i32>) {
     let (mut bezier, mut bezier_counts) = (Vec::new(), Vec::new());
     let mut start = 0;

@@ -115,4 +115,6 @@ pub(super) fn build(
 }
 
 #[cfg(test)]
+mod assets;
+#[cfg(test)]
 mod testing;

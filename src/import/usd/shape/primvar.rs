@@ -1,5 +1,6 @@
 //! Primvars: how values lie on a shape.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use openusd::sdf::{Value, ValueKind};
@@ -71,24 +72,47 @@ impl<const N: usize> Channel<N> {
 }
 
 /// The primvars of `prim`, which inherits `inherited`.
+///
+/// Whether a value is authored is told by reading it: to ask the stage first would decode it twice.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) -> Primvars {
-    let api = PrimvarsAPI::from_prim_unchecked(prim.clone());
-    let list = api.find_primvars_with_inheritance_from(inherited).unwrap_or_else(|error| {
+    let own = PrimvarsAPI::from_prim_unchecked(prim.clone()).authored_primvars().unwrap_or_else(|error| {
         reading.warn(prim.path(), format!("its primvars can't be read: {error}"));
-        inherited.to_vec()
+        Vec::new()
     });
     let mut primvars = Primvars::default();
-    for primvar in &list {
-        match primvar.primvar_name() {
-            "displayColor" => primvars.color = data(reading, primvar, triples),
-            "displayOpacity" => primvars.opacity = data(reading, primvar, scalars),
-            "normals" => primvars.normals = data(reading, primvar, triples),
-            "widths" => primvars.widths = data(reading, primvar, scalars),
-            _ if has_two_numbers(primvar) => primvars.uvs.extend(data(reading, primvar, pairs)),
-            _ => {}
+    let mut known: HashSet<&str> = HashSet::new();
+    for primvar in own.iter().chain(inherited) {
+        let name = primvar.primvar_name();
+        if !known.contains(name) && primvars.take(reading, primvar) {
+            known.insert(name);
         }
     }
     primvars
+}
+
+impl Primvars {
+    /// True where `primvar` has a value.
+    fn take(&mut self, reading: &Reading<'_>, primvar: &Primvar) -> bool {
+        match primvar.primvar_name() {
+            "displayColor" => keep(&mut self.color, data(reading, primvar, triples)),
+            "displayOpacity" => keep(&mut self.opacity, data(reading, primvar, scalars)),
+            "normals" => keep(&mut self.normals, data(reading, primvar, triples)),
+            "widths" => keep(&mut self.widths, data(reading, primvar, scalars)),
+            _ if has_two_numbers(primvar) => {
+                let mut slot = None;
+                let found = keep(&mut slot, data(reading, primvar, pairs));
+                self.uvs.extend(slot);
+                found
+            }
+            _ => false,
+        }
+    }
+}
+
+fn keep<T>(slot: &mut Option<T>, value: Option<T>) -> bool {
+    let found = value.is_some();
+    *slot = value;
+    found
 }
 
 fn has_two_numbers(primvar: &Primvar) -> bool {
@@ -104,12 +128,10 @@ fn data<const N: usize>(reading: &Reading<'_>, primvar: &Primvar, convert: Conve
     let mut data = array(reading, primvar.attribute(), convert, Interpolation::Constant)?;
     data.name = primvar.primvar_name().into();
     data.stride = primvar.element_size().ok().and_then(|size| usize::try_from(size).ok()).unwrap_or(1).max(1);
-    if primvar.is_indexed().unwrap_or(false) {
-        data.indices = primvar.indices(reading.time).unwrap_or_default();
-        if data.indices.is_none() {
-            reading.warn(primvar.attribute().path(), "its indices can't be read; the primvar is left out");
-            return None;
-        }
+    data.indices = primvar.indices(reading.time).unwrap_or_default();
+    if data.indices.is_none() && primvar.is_indexed().unwrap_or(false) {
+        reading.warn(primvar.attribute().path(), "its indices can't be read; the primvar is left out");
+        return None;
     }
     Some(data)
 }
@@ -146,6 +168,13 @@ pub(super) fn array<const N: usize>(
 }
 
 impl<const N: usize> Data<N> {
+    /// Values of points become varying ones.
+    pub fn at_joints(&mut self) {
+        if self.interpolation == Interpolation::Vertex {
+            self.interpolation = Interpolation::Varying;
+        }
+    }
+
     /// Holds the values against the counts of the shape; `None`, with a warning, where there are too few.
     pub fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
         let Self { name, interpolation, mut values, indices, stride } = self;

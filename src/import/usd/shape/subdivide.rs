@@ -110,17 +110,14 @@ impl Rules {
         );
         let refine = Refine { refinement: &refinement, cage_corners, kept_corners: kept_corners.as_deref() };
         let Channels { uvs, color, opacity, .. } = channels;
-        let normals = match self.scheme {
-            Scheme::Bilinear => None,
-            _ => Some(refine.normals(&points, flipped)),
-        };
+        let (refined, normals) = refinement.surface(&points);
+        let normals = normals.map(|normals| as_channel(normals, flipped));
         let channels = Channels {
             normals,
             uvs: uvs.into_iter().map(|(name, channel)| (name, refine.channel(channel))).collect(),
             color: color.map(|channel| refine.channel(channel)),
             opacity: opacity.map(|channel| refine.channel(channel)),
         };
-        let refined = refinement.vertex(&points);
         let sources = refinement.sources();
         let sources = match &kept_faces {
             Some(kept) => sources.iter().map(|&face| kept[face as usize]).collect(),
@@ -248,15 +245,16 @@ impl Refine<'_> {
             }
         }
     }
+}
 
-    fn normals(&self, points: &[[f32; 3]], flipped: bool) -> Channel<3> {
-        let (interpolation, mut values) = match self.refinement.normals(points) {
-            Attribute::Point(values) => (Interpolation::Vertex, values),
-            Attribute::Corner(values) => (Interpolation::FaceVarying, values),
-        };
-        if flipped {
-            values.as_flattened_mut().iter_mut().for_each(|v| *v = -*v);
-        }
-        Channel { interpolation, values, indices: None }
+/// Normals of the front.
+fn as_channel(normals: Attribute<[f32; 3]>, flipped: bool) -> Channel<3> {
+    let (interpolation, mut values) = match normals {
+        Attribute::Point(values) => (Interpolation::Vertex, values),
+        Attribute::Corner(values) => (Interpolation::FaceVarying, values),
+    };
+    if flipped {
+        values.as_flattened_mut().iter_mut().for_each(|v| *v = -*v);
     }
+    Channel { interpolation, values, indices: None }
 }

@@ -30,3 +30,9 @@ pub(super) fn built(usda: &str, path: &str, wants: &Wants, subdivision: u32) -> 
     let built = source.and_then(|source| build(source, wants, subdivision, &place, &mut warnings));
     (built, warnings.iter().map(|w| w.what.clone()).collect())
 }
+
+#[test]
+fn sources_go_to_other_threads() {
+    fn is_send<T: Send>() {}
+    is_send::<Source>();
+}

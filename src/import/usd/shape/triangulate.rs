@@ -1,7 +1,12 @@
 //! Faces of any size to triangles: a fan where that covers the face (as Hydra does), else by clipping ears
 //! in the plane that fits best.
 
+use std::cell::Cell;
+
 use crate::math::{DVec2, DVec3};
+
+/// Corners that are looked at before a face is taken for hopeless: seconds, for outlines of very many corners.
+const MOST_WORK: u64 = 1 << 30;
 
 /// Appends the triangles of the polygon with `corners`, as positions in it; `point` tells where a corner
 /// is. A polygon of n corners always has n − 2.
@@ -72,11 +77,17 @@ impl Scratch {
     fn clip_ears(&mut self, triangles: &mut Vec<[u32; 3]>) {
         let p = &self.plane;
         let left = &mut self.left;
+        let work = Cell::new(0);
         left.clear();
         left.extend(0..p.len() as u32);
         let mut at = 0;
         while left.len() > 3 {
             let n = left.len();
+            if work.get() > MOST_WORK {
+                let fan = left[1..].windows(2).map(|pair| [left[0], pair[0], pair[1]]);
+                triangles.extend(fan);
+                return;
+            }
             let corner = |i: usize| left[i % n];
             let turn = |i: usize| {
                 let [a, b, c] = [i + n - 1, i, i + 1].map(|i| p[corner(i) as usize]);
@@ -84,9 +95,11 @@ impl Scratch {
             };
             let is_ear = |i: usize| {
                 let ear = [i + n - 1, i, i + 1].map(|i| p[corner(i) as usize]);
+                work.set(work.get() + 1);
                 turn(i) > 0.0
                     && (i + 2..i + n - 1).all(|j| {
                         let q = p[corner(j) as usize];
+                        work.set(work.get() + 1);
                         // A corner at the same place as one of the ear's is a bridge to a hole.
                         ear.contains(&q) || !(0..3).all(|k| area(ear[k], ear[(k + 1) % 3], q) >= 0.0)
                     })
