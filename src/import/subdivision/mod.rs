@@ -117,8 +117,7 @@ impl Refinement {
         let mut levels = Vec::new();
         for _ in 0..depth {
             let children = topology.split(cage.scheme);
-            let inherit = |values: &[u32]| children.parents.iter().map(|&f| values[f as usize]).collect();
-            sources = inherit(&sources);
+            sources = children.parents.iter().map(|&f| sources[f as usize]).collect();
             holes = children.parents.iter().map(|&f| holes[f as usize]).collect();
             let child = Topology::new(children.faces, children.points);
             let next = sharpness.child(&topology, &child, cage.scheme);

@@ -87,7 +87,7 @@ fn author(stage: &Stage, prim: &Prim, set: String, choice: String) -> openusd::R
 
 /// The nearest prim above `prim` that exists, and its children.
 fn siblings(stage: &Stage, prim: &Prim) -> String {
-    let exists = |path: &sdf::Path| stage.prim(path).and_then(|p| Ok(p.is_valid().unwrap_or(false))).unwrap_or(false);
+    let exists = |path: &sdf::Path| stage.prim(path).is_ok_and(|p| p.is_valid().unwrap_or(false));
     let above = prim.path().strict_ancestors().find(|path| path.is_abs_root() || exists(path));
     let above = above.unwrap_or_else(sdf::Path::abs_root);
     let children = stage.prim(&above).map(|p| p.child_names().unwrap_or_default()).unwrap_or_default();

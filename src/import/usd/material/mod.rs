@@ -37,6 +37,9 @@ use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc}
 /// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
 const CONTEXTS: [&str; 2] = ["mtlx", ""];
 
+/// Index of the image that holds all tiles, and how many there are along u and v.
+type Tiled = (u32, [u32; 2]);
+
 /// A network and what it was found as.
 struct Found {
     network: Network,
@@ -56,7 +59,7 @@ pub(super) struct Materials<'a> {
     unbound: Option<u32>,
     /// Networks that were gathered ahead, in the order in which they are tried.
     gathered: HashMap<sdf::Path, Vec<Found>>,
-    udims: HashMap<(String, bool), Result<(u32, [u32; 2]), String>>,
+    udims: HashMap<(String, bool), Result<Tiled, String>>,
 }
 
 impl<'a> Materials<'a> {

@@ -4,8 +4,11 @@ use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
 use super::function::Function as F;
 
+/// Names of the inputs of a function, with their defaults.
+type Inputs = &'static [(&'static str, f64)];
+
 /// Functions of which each input has one default.
-const SIMPLE: &[(&str, F, &[(&str, f64)])] = &[
+const SIMPLE: &[(&str, F, Inputs)] = &[
     ("add", F::Add, &[("in1", 0.0), ("in2", 0.0)]),
     ("multiply", F::Multiply, &[("in1", 0.0), ("in2", 1.0)]),
     ("divide", F::Divide, &[("in1", 0.0), ("in2", 1.0)]),

@@ -151,7 +151,7 @@ impl Curves {
         let triangles = Triangles { points: triangles, corners: None, faces: None };
         let mesh =
             Surface { points, triangles, channels, slots: None, motion: Vec::new() }.finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new(), double_sided: true })
+        Some(Built { mesh, copies: Vec::new() })
     }
 }
 

@@ -23,7 +23,6 @@ pub(in super::super) struct Mesh {
     indices: Vec<i32>,
     holes: Vec<i32>,
     flipped: bool,
-    double_sided: bool,
     /// `None` for a mesh of flat faces.
     rules: Option<Rules>,
     primvars: Primvars,
@@ -60,7 +59,6 @@ pub(super) fn read(
         indices,
         holes: reading.value(prim, "holeIndices").unwrap_or_default(),
         flipped: is_left_handed(reading, prim),
-        double_sided: reading.value(prim, "doubleSided").unwrap_or(false),
         rules,
         primvars,
         subsets: subsets::read(reading, prim),
@@ -90,7 +88,6 @@ pub(super) fn read_tetrahedra(reading: &Reading<'_>, prim: &Prim, inherited: &[P
         indices,
         holes: Vec::new(),
         flipped: is_left_handed(reading, prim),
-        double_sided: reading.value(prim, "doubleSided").unwrap_or(false),
         rules: None,
         primvars,
         subsets: Subsets::default(),
@@ -115,7 +112,7 @@ pub(super) fn is_left_handed(reading: &Reading<'_>, prim: &Prim) -> bool {
 
 impl Mesh {
     pub fn build(self, wants: &Wants, depth: u32, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { mut points, counts, indices, holes, flipped, double_sided, rules, primvars, subsets, motion } = self;
+        let Self { mut points, counts, indices, holes, flipped, rules, primvars, subsets, motion } = self;
         let corners = counts.iter().map(|&count| usize::try_from(count).unwrap_or(0)).sum();
         let sizes = Counts { faces: counts.len(), joints: points.len(), points: points.len(), corners };
         let channels = Channels::new(primvars, &sizes, wants, place, warnings);
@@ -130,14 +127,14 @@ impl Mesh {
             }
             None => {
                 let triangles = authored
-                    .as_triangles()
+                    .into_triangles()
                     .unwrap_or_else(|authored| authored.polygons(false, place, warnings).0.triangles(&points, &[]));
                 Surface { points, triangles, channels, slots: None, motion }
             }
         };
         surface.slots = slots;
         let mesh = surface.finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new(), double_sided })
+        Some(Built { mesh, copies: Vec::new() })
     }
 }
 

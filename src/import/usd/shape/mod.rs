@@ -61,8 +61,6 @@ pub(super) struct Built {
     pub mesh: MeshDesc,
     /// Where copies of the mesh stand in object space (points); empty for one as it is.
     pub copies: Vec<DAffine3>,
-    /// False where its author wants back faces not to be seen.
-    pub double_sided: bool,
 }
 
 impl Source {

@@ -71,6 +71,6 @@ impl Points {
             warnings.push(place, "values of single points are left out; those of the first point stand for all");
         }
         let mesh = primitive::solid_surface(Solid::sphere(1.0), channels).finish(wants, place, warnings)?;
-        Some(Built { mesh, copies, double_sided: false })
+        Some(Built { mesh, copies })
     }
 }

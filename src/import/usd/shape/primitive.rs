@@ -17,7 +17,6 @@ use openusd_schemas::geom::Interpolation;
 pub(in super::super) struct Primitive {
     shape: Shape,
     axis: Axis,
-    double_sided: bool,
     primvars: Primvars,
 }
 
@@ -74,13 +73,12 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         }
         _ => Axis::Z,
     };
-    let double_sided = reading.value(prim, "doubleSided").unwrap_or(false);
-    Some(Primitive { shape, axis, double_sided, primvars: primvar::read(reading, prim, inherited) })
+    Some(Primitive { shape, axis, primvars: primvar::read(reading, prim, inherited) })
 }
 
 impl Primitive {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { shape, axis, double_sided, primvars } = self;
+        let Self { shape, axis, primvars } = self;
         let solid = match shape {
             Shape::Cube { size } => Solid::cube(size),
             Shape::Sphere { radius } => Solid::sphere(radius).along(axis),
@@ -93,7 +91,7 @@ impl Primitive {
         let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
         channels.make_constant();
         let mesh = solid_surface(solid, channels).finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new(), double_sided })
+        Some(Built { mesh, copies: Vec::new() })
     }
 }
 

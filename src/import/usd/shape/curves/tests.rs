@@ -5,7 +5,7 @@ use crate::math::Vec3;
 
 fn curves(kind: &str, body: &str) -> (Option<Built>, Vec<String>) {
     let sets = if body.contains("primvars:st") { vec!["st".into()] } else { Vec::new() };
-    let wants = Wants { uv_sets: sets, tangents: None, display_color: true };
+    let wants = Wants { uv_sets: sets, tangents: None, display_color: true, ..Wants::default() };
     built(&format!("def {kind} \"C\"\n{{\n{body}\n}}\n"), "/C", &wants, 2)
 }
 

@@ -3,7 +3,12 @@ use crate::import::usd::shape::testing::{built, source};
 use crate::import::usd::shape::{Built, Wants};
 
 fn wants(sets: &[&str]) -> Wants {
-    Wants { uv_sets: sets.iter().map(|&name| name.into()).collect(), tangents: None, display_color: true, ..Wants::default() }
+    Wants {
+        uv_sets: sets.iter().map(|&name| name.into()).collect(),
+        tangents: None,
+        display_color: true,
+        ..Wants::default()
+    }
 }
 
 fn mesh(body: &str) -> (Option<Built>, Vec<String>) {
