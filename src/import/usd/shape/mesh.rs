@@ -130,7 +130,7 @@ impl Mesh {
             }
             None => {
                 let triangles = authored
-                    .as_triangles()
+                    .into_triangles()
                     .unwrap_or_else(|authored| authored.polygons(false, place, warnings).0.triangles(&points, &[]));
                 Surface { points, triangles, channels, slots: None, motion }
             }

@@ -52,7 +52,7 @@ pub(super) struct Authored<'a> {
 
 impl Authored<'_> {
     /// The triangles of a mesh that has nothing else and nothing wrong: the arrays as they are.
-    pub fn as_triangles(self) -> Result<Triangles, Self> {
+    pub fn into_triangles(self) -> Result<Triangles, Self> {
         let fits = self.indices.len() == 3 * self.counts.len()
             && self.holes.is_empty()
             && self.bad.is_none()

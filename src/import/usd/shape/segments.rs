@@ -185,6 +185,6 @@ impl Piece<3> {
         let scale = (b - a).length() + (c - b).length() + (d - c).length();
         // Thin curves that fill the picture show their chords as well.
         let tolerance = tolerance.min(2e-3 * scale).max(1e-5 * scale);
-        if !(bend > 1e-6 * scale) { 1 } else { (0.75 * bend / tolerance).sqrt().ceil().clamp(1.0, 64.0) as u32 }
+        if bend > 1e-6 * scale { (0.75 * bend / tolerance).sqrt().ceil().clamp(1.0, 64.0) as u32 } else { 1 }
     }
 }

@@ -18,7 +18,7 @@ pub(super) struct Subsets {
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim) -> Subsets {
     let mut subsets = Subsets::default();
     for child in prim.children().unwrap_or_default() {
-        if !child.type_name().ok().flatten().is_some_and(|kind| kind == "GeomSubset") {
+        if child.type_name().ok().flatten().is_none_or(|kind| kind != "GeomSubset") {
             continue;
         }
         if reading.value::<Token>(&child, "familyName").is_none_or(|family| family != "materialBind") {
