@@ -117,8 +117,8 @@ impl Refinement {
         let mut levels = Vec::new();
         for _ in 0..depth {
             let children = topology.split(cage.scheme);
-            sources = children.parents.iter().map(|&f| sources[f as usize]).collect();
-            holes = children.parents.iter().map(|&f| holes[f as usize]).collect();
+            sources = children.parents.iter().map(|&face| sources[face as usize]).collect();
+            holes = children.parents.iter().map(|&face| holes[face as usize]).collect();
             let child = Topology::new(children.faces, children.points);
             let next = sharpness.child(&topology, &child, cage.scheme);
             let rules = rules::of(&topology, std::mem::replace(&mut sharpness, next));

@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn convex_faces_are_fans() {
         let hexagon: Vec<[f32; 3]> =
-            (0..6).map(|i| (i as f32 * 1.047_197_5).sin_cos()).map(|(s, c)| [c, s, 2.0]).collect();
+            (0..6).map(|i| (i as f32 * std::f32::consts::FRAC_PI_3).sin_cos()).map(|(s, c)| [c, s, 2.0]).collect();
         assert_eq!(cut(&hexagon), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
         assert_eq!(cut(&hexagon[..4]), [[0, 1, 2], [0, 2, 3]]);
     }
