@@ -179,7 +179,7 @@ mod tests {
         let ball = light("/Ball").unwrap().material(Some(&glowing([0.5; 3])), || 0.0);
         assert_eq!((&*ball.name, ball.emission.factor), ("light", [1.0; 3]));
         assert_eq!(light("/Dark"), None);
-        let (target, old) = stage.with("/Old", |reading, placed| geometry_light(reading, placed)).unwrap();
+        let (target, old) = stage.with("/Old", geometry_light).unwrap();
         assert_eq!((target.as_str(), old.material(None, || 0.0).emission.factor), ("/Dark", [2.0; 3]));
         assert_eq!(stage.said(), "");
     }
