@@ -4,6 +4,7 @@
 mod bad;
 mod composition;
 mod instances;
+mod probe;
 mod shown;
 mod times;
 mod walk_time;

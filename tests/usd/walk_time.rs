@@ -9,6 +9,16 @@ use super::try_load;
 
 /// 5 000 references to an asset of 20 prims: 100 000 prims, none of them shared.
 fn references(instanceable: bool) -> f64 {
+    let (_dir, path) = write(instanceable);
+    let start = Instant::now();
+    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
+    let seconds = start.elapsed().as_secs_f64();
+    assert_eq!(loaded.scene.instances.len(), 5000 * 19);
+    assert_eq!(loaded.scene.meshes.len(), if instanceable { 19 } else { 5000 * 19 });
+    seconds
+}
+
+pub fn write(instanceable: bool) -> (tempfile::TempDir, std::path::PathBuf) {
     let dir = tempfile::tempdir().unwrap();
     let mut asset = String::from("#usda 1.0\n(\n defaultPrim = \"Asset\"\n)\ndef Xform \"Asset\" {\n");
     for i in 0..19 {
@@ -34,12 +44,7 @@ fn references(instanceable: bool) -> f64 {
     root.push_str("}\n");
     let path = dir.path().join("root.usda");
     std::fs::write(&path, root).unwrap();
-    let start = Instant::now();
-    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
-    let seconds = start.elapsed().as_secs_f64();
-    assert_eq!(loaded.scene.instances.len(), 5000 * 19);
-    assert_eq!(loaded.scene.meshes.len(), if instanceable { 19 } else { 5000 * 19 });
-    seconds
+    (dir, path)
 }
 
 #[test]

@@ -8,8 +8,10 @@ use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::{Primvar, PrimvarsAPI};
 
 use super::bindings::Bindings;
+use super::kinds::Kind;
 use super::stage::Reading;
 use super::xform::Xform;
+use crate::desc::Motion;
 use crate::import::Purpose;
 use crate::math::DAffine3;
 
@@ -19,7 +21,7 @@ pub(super) struct Pose {
     /// Object to the space that the walk started in.
     pub world: DAffine3,
     /// The same at each of the walk's times; `None` for what does not move.
-    pub motion: Option<Rc<[DAffine3]>>,
+    pub motion: Option<Arc<[DAffine3]>>,
     /// True below `!resetXformStack!`: `world` leads to our space, whatever the walk started in.
     pub absolute: bool,
 }
@@ -43,6 +45,12 @@ impl Pose {
         };
         Self { world: self.world * inner.world, motion, absolute: self.absolute }
     }
+}
+
+/// The transforms of `pose` at `times`.
+pub(super) fn moving(times: &[f64], pose: &Pose) -> Vec<Motion<DAffine3>> {
+    let values = pose.motion.iter().flat_map(|values| values.iter());
+    times.iter().zip(values).map(|(&time, &value)| Motion { time, value }).collect()
 }
 
 /// What the children of a prim take from it and from all above.
@@ -91,26 +99,26 @@ impl Context {
     }
 
     /// That of `prim`, whose authored properties are `names`, without its primvars, which only its children
-    /// inherit. Opinions of prims that are not `imageable` do not count.
-    pub fn enter(&self, clock: &mut Clock<'_, '_>, prim: &Prim, imageable: bool, names: &[Token]) -> Self {
+    /// inherit. Opinions that its `kind` has no use for do not count.
+    pub fn enter(&self, clock: &mut Clock<'_, '_>, prim: &Prim, kind: &Kind, names: &[Token]) -> Self {
         let reading = clock.reading;
         let mut inner = self.clone();
         if self.group {
             let kinds = reading.stage.schema_registry().kinds();
-            let kind = prim.kind().ok().flatten();
-            inner.group = kind.as_ref().is_some_and(|kind| kinds.is_group(kind));
+            let model = prim.kind().ok().flatten();
+            inner.group = model.as_ref().is_some_and(|kind| kinds.is_group(kind));
             // A published asset, or what stands in the root where there is none.
-            if prim.path().is_root_prim() || kind.is_some_and(|kind| kinds.is_component(&kind)) {
+            if prim.path().is_root_prim() || model.is_some_and(|kind| kinds.is_component(&kind)) {
                 inner.asset = prim.path().name().map(Into::into);
             }
         }
         let mut binds = false;
         for name in names {
             match name.as_str() {
-                "xformOpOrder" if imageable => inner.pose = self.pose_of(clock, prim),
-                "visibility" if imageable => inner.invisible |= token(reading, prim, name) == "invisible",
-                "purpose" if imageable => inner.purpose = self.purpose_of(reading, prim, name),
-                "renderVisibility" | "proxyVisibility" | "guideVisibility" if imageable => {
+                "xformOpOrder" if kind.xformable => inner.pose = self.pose_of(clock, prim, names),
+                "visibility" if kind.imageable => inner.invisible |= token(reading, prim, name) == "invisible",
+                "purpose" if kind.imageable => inner.purpose = self.purpose_of(reading, prim, name),
+                "renderVisibility" | "proxyVisibility" | "guideVisibility" if kind.imageable => {
                     let at =
                         ["renderVisibility", "proxyVisibility", "guideVisibility"].iter().position(|n| *n == &**name);
                     let hidden = at.map(|at| &mut inner.hidden_purposes[at]);
@@ -156,9 +164,9 @@ impl Context {
         }
     }
 
-    fn pose_of(&self, clock: &mut Clock<'_, '_>, prim: &Prim) -> Pose {
+    fn pose_of(&self, clock: &mut Clock<'_, '_>, prim: &Prim, names: &[Token]) -> Pose {
         let reading = clock.reading;
-        let Some(xform) = Xform::of(reading, prim) else { return self.pose.clone() };
+        let Some(xform) = Xform::of(reading, prim, names) else { return self.pose.clone() };
         let inner = Pose { world: xform.at(reading, reading.time), motion: clock.motion(&xform), absolute: false };
         let resets = xform.resets;
         clock.note(|| Mover::Transform(xform));
@@ -231,7 +239,7 @@ impl<'r, 'a> Clock<'r, 'a> {
     }
 
     /// The local transform `xform` at each of the times, if it moves.
-    fn motion(&self, xform: &Xform) -> Option<Rc<[DAffine3]>> {
+    fn motion(&self, xform: &Xform) -> Option<Arc<[DAffine3]>> {
         if self.times.is_empty() || !xform.varies() {
             return None;
         }

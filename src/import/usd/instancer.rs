@@ -57,16 +57,16 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
 fn prototypes(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context) -> Vec<Rc<Vec<Shown>>> {
     let reading = walk.reading;
     let targets = prim.relationship("prototypes").forwarded_targets().unwrap_or_default();
-    let of = |path: sdf::Path| match walk.pointed.get(&path) {
+    let of = |path: sdf::Path| match walk.prototypes.pointed.get(&path) {
         Some(Some(known)) => known.clone(),
         Some(None) => {
             reading.warn(prim.path(), format!("is within its own prototype {path}; that is left out"));
             Rc::default()
         }
         None => {
-            walk.pointed.insert(path.clone(), None);
+            walk.prototypes.pointed.insert(path.clone(), None);
             let found = Rc::new(prototype(walk, prim, context, &path));
-            walk.pointed.insert(path, Some(found.clone()));
+            walk.prototypes.pointed.insert(path, Some(found.clone()));
             found
         }
     };
@@ -85,19 +85,10 @@ fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path:
     }
     // What it takes from its ancestors, save where they stand.
     let inside = path.has_prefix(instancer.path());
-    let above = |ancestor: &sdf::Path| !inside || ancestor != instancer.path() && ancestor.has_prefix(instancer.path());
-    let mut ancestors: Vec<sdf::Path> = path.strict_ancestors_below_root().filter(above).collect();
-    ancestors.reverse();
-    let mut within = if inside { context.clone() } else { Context::root(Pose::still(DAffine3::IDENTITY)) };
-    if inside {
-        let names = instancer.authored_property_names().unwrap_or_default();
-        within.hand_down_primvars(reading, instancer, &names);
-    }
-    for ancestor in ancestors.iter().filter_map(|path| reading.stage.prim(path).ok()) {
-        let names = ancestor.authored_property_names().unwrap_or_default();
-        within = within.enter(&mut walk.clock, &ancestor, true, &names);
-        within.hand_down_primvars(reading, &ancestor, &names);
-    }
+    let mut within = match path.parent() {
+        Some(above) => (*walk.context_at(&above)).clone(),
+        None => return Vec::new(),
+    };
     within.pose = Pose::still(DAffine3::IDENTITY);
     within.asset = None;
     within.group = false;

@@ -8,14 +8,20 @@
 //!                                    └─► lights, cameras, render settings
 //! ```
 
+mod authored;
 mod bindings;
 mod camera;
+mod crew;
 mod diagnostics;
+mod gather;
 mod images;
 mod inherit;
 mod instancer;
+mod instances;
+mod kinds;
 mod light;
 mod material;
+mod prototypes;
 mod render;
 mod scene;
 mod shape;

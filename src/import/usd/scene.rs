@@ -1,21 +1,20 @@
 //! Puts the scene together.
 
-use std::cell::Cell;
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
 
-use openusd::sdf;
+use openusd::sdf::Path;
 
+use super::gather::{Found, Haul};
 use super::images::Images;
+use super::inherit::{Clock, moving};
 use super::light::{Profiles, ShapeLight};
 use super::material::Materials;
-use super::shapes::{self, Look, Shapes};
 use super::stage::Reading;
-use super::walk::{Shown, Walked};
-use super::{bindings, camera, light, render, units, variants, walk};
-use crate::desc::{InstanceDesc, LightLinks, Motion, SceneDesc, Visibility};
-use crate::error::{Place, Result};
-use crate::math::DAffine3;
+use super::walk::{Placed, Walk};
+use super::{camera, crew, instances, light, render, shapes, units, variants};
+use crate::desc::SceneDesc;
+use crate::error::Result;
 
 /// The whole stage as a scene.
 pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
@@ -25,20 +24,21 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
         variants: offered(reading),
         ..SceneDesc::default()
     };
-    let walked = walk::walk(reading);
+    let haul = gather(reading);
     let mut images = Images::default();
-    let geometry = lights_and_cameras(reading, &walked, &mut images, &mut scene);
+    let geometry = lights_and_cameras(reading, &haul, &mut images, &mut scene);
     let mut materials = Materials::new(reading, images);
-    let bound = walked.shown.iter().map(|shown| {
-        bindings::bound(reading, shown.leaf.bindings.as_ref(), shown.scope.as_ref(), shown.leaf.prim.path())
-    });
-    let bound: std::collections::BTreeSet<sdf::Path> = bound.flatten().collect();
+    let subsets = |found: &'_ Found| {
+        found.look.shape.iter().flat_map(|shape| shape.subsets.clone()).flatten().collect::<Vec<_>>()
+    };
+    let bound: BTreeSet<Path> =
+        haul.found.iter().flat_map(|f| f.look.material.clone().into_iter().chain(subsets(f))).collect();
     materials.preload(&bound);
-    let aside = |kind: &str| kind == "Camera" || light::is_light(kind);
-    let shapes = shapes::read(reading, &walked, &mut materials, aside);
+    let Haul { found, shapes, times } = haul;
+    let shapes = shapes::build(reading, &found, shapes, &mut materials);
     materials.finish(&mut scene);
-    place(reading, &walked, shapes, &geometry, &mut scene);
-    if walked.shown.iter().any(|shown| shown.leaf.linked) {
+    instances::place(reading, &found, &times, shapes, &geometry, &mut scene);
+    if found.iter().any(|found| found.look.linked) {
         light::link(reading, &mut scene);
     }
     if moves(&scene) {
@@ -50,9 +50,42 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     Ok(scene)
 }
 
+/// True for what is read on its own, not as a shape.
+fn aside(kind: &str) -> bool {
+    kind == "Camera" || light::is_light(kind)
+}
+
+/// Everything that is shown; read anew where a camera's shutter is open for longer than an instant, which
+/// is known only when all was seen.
+fn gather(reading: &Reading<'_>) -> Haul {
+    let haul = crew::gather(reading, aside);
+    let Some(shutter) = shutter(reading, &haul) else { return haul };
+    reading.shutter.set(Some(shutter));
+    let mut walk = Walk::new(Clock::still(reading));
+    walk.stage();
+    let clock = walk.clock.moving(shutter).unwrap_or_else(|| Clock::still(reading));
+    crew::by_one(clock, aside)
+}
+
+/// From when to when a camera's shutter is open, in time codes after the frame.
+fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
+    // Without a frame there is nothing to be before or after.
+    if reading.time.is_earliest_time() {
+        return None;
+    }
+    let of = |found: &Found| {
+        let prim = reading.stage.prim(&found.look.prim).ok()?;
+        let end = |name| reading.value::<f64>(&prim, name).filter(|t| t.is_finite()).unwrap_or(0.0);
+        let (open, close) = (end("shutter:open"), end("shutter:close"));
+        (open < close).then_some([open, close])
+    };
+    let cameras = haul.found.iter().filter(|found| &*found.look.kind == "Camera");
+    cameras.filter_map(of).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
 /// Variants of the prims in the root, as `--variant` takes them.
 fn offered(reading: &Reading<'_>) -> Vec<String> {
-    let root = reading.stage.prim(sdf::Path::abs_root()).and_then(|root| Ok(root.children().unwrap_or_default()));
+    let root = reading.stage.prim(Path::abs_root()).map(|root| root.children().unwrap_or_default());
     let mut offered = Vec::new();
     for prim in root.unwrap_or_default() {
         for (set, choices) in variants::sets(&prim) {
@@ -65,146 +98,32 @@ fn offered(reading: &Reading<'_>) -> Vec<String> {
 /// Adds lamps and cameras; gives the shapes that GeometryLights make shine, by their path.
 fn lights_and_cameras(
     reading: &Reading<'_>,
-    walked: &Walked,
+    haul: &Haul,
     images: &mut Images,
     scene: &mut SceneDesc,
-) -> HashMap<sdf::Path, ShapeLight> {
+) -> HashMap<Path, ShapeLight> {
     let mut profiles = Profiles::default();
     let mut geometry = HashMap::new();
-    for shown in &walked.shown {
-        match &*shown.leaf.kind {
-            "Camera" => scene.cameras.extend(camera::read(reading, &walked.placed(reading, shown))),
-            "GeometryLight" => geometry.extend(light::geometry_light(reading, &walked.placed(reading, shown))),
-            kind if light::is_light(kind) => {
-                let placed = walked.placed(reading, shown);
-                scene.lights.extend(light::read(reading, &placed, images, &mut profiles));
-            }
-            _ => {}
+    for found in haul.found.iter().filter(|found| aside(&found.look.kind)) {
+        let Ok(prim) = reading.stage.prim(&found.look.prim) else { continue };
+        let placed = Placed {
+            prim,
+            path: found.path.clone(),
+            kind: Rc::from(&*found.look.kind),
+            world: found.pose.world,
+            motion: moving(&haul.times, &found.pose),
+            material: found.look.material.clone(),
+            primvars: Rc::default(),
+            visible: found.look.visible,
+        };
+        match &*placed.kind {
+            "Camera" => scene.cameras.extend(camera::read(reading, &placed)),
+            "GeometryLight" => geometry.extend(light::geometry_light(reading, &placed)),
+            _ => scene.lights.extend(light::read(reading, &placed, images, &mut profiles)),
         }
     }
     scene.ies = profiles.list;
     geometry
-}
-
-/// Adds meshes and instances.
-fn place(
-    reading: &Reading<'_>,
-    walked: &Walked,
-    shapes: Shapes,
-    geometry: &HashMap<sdf::Path, ShapeLight>,
-    scene: &mut SceneDesc,
-) {
-    let mut meshes: Vec<Option<(u32, Vec<DAffine3>)>> = Vec::new();
-    for built in shapes.built {
-        meshes.push(built.map(|built| {
-            scene.meshes.push(built.mesh);
-            (scene.meshes.len() as u32 - 1, built.copies)
-        }));
-    }
-    let mut names = Names::default();
-    let mut shining = HashMap::new();
-    for (number, (shown, look)) in walked.shown.iter().zip(&shapes.by_shown).enumerate() {
-        let Some(look) = look.and_then(|look| shapes.looks.get(look)) else { continue };
-        let Some(Some((mesh, copies))) = meshes.get(look.shape) else { continue };
-        if !usable(&shown.pose.world) {
-            reading.warn(&shown.path, "its transform is singular or not finite; it is left out");
-            continue;
-        }
-        let light = look.light.as_ref().or_else(|| geometry.get(&shown.path));
-        let materials = match light {
-            Some(light) => shine(reading, shown, look, light, *mesh, &mut shining, scene),
-            None => look.materials.clone(),
-        };
-        let (name, place, asset) = names.of(reading, shown);
-        let instance = InstanceDesc {
-            name,
-            place,
-            asset,
-            mesh: *mesh,
-            transform: shown.pose.world,
-            motion: walked.motion(shown),
-            materials,
-            object_index: number as u32 + 1,
-            visibility: Visibility::ALL,
-            links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
-        };
-        if copies.is_empty() {
-            scene.instances.push(instance);
-            continue;
-        }
-        for copy in copies {
-            let motion = instance.motion.iter().map(|m| Motion { time: m.time, value: m.value * *copy }).collect();
-            let transform = instance.transform * *copy;
-            scene.instances.push(InstanceDesc { transform, motion, ..instance.clone() });
-        }
-    }
-}
-
-/// Materials that make the shape shine; those of one look are made once, unless they depend on its size.
-fn shine(
-    reading: &Reading<'_>,
-    shown: &Shown,
-    look: &Look,
-    light: &ShapeLight,
-    mesh: u32,
-    known: &mut HashMap<(*const Look, *const ShapeLight), Vec<Option<u32>>>,
-    scene: &mut SceneDesc,
-) -> Vec<Option<u32>> {
-    let key = (std::ptr::from_ref(look), std::ptr::from_ref(light));
-    if let Some(known) = known.get(&key) {
-        return known.clone();
-    }
-    let sized = Cell::new(false);
-    let mut materials = Vec::new();
-    for slot in &look.materials {
-        let bound = slot.and_then(|slot| scene.materials.get(slot as usize));
-        let material = light.material(bound, || {
-            sized.set(true);
-            scene.meshes.get(mesh as usize).map_or(0.0, |mesh| light::area(reading, mesh, &shown.pose.world))
-        });
-        scene.materials.push(material);
-        materials.push(Some(scene.materials.len() as u32 - 1));
-    }
-    if !sized.get() {
-        known.insert(key, materials.clone());
-    }
-    materials
-}
-
-/// Texts that instances share.
-#[derive(Default)]
-struct Names {
-    names: HashMap<String, Arc<str>>,
-    last: Option<(sdf::Path, Place)>,
-}
-
-impl Names {
-    /// Name, place and asset of a prim.
-    fn of(&mut self, reading: &Reading<'_>, shown: &Shown) -> (Arc<str>, Place, Arc<str>) {
-        let place = match &self.last {
-            Some((path, place)) if *path == shown.path => place.clone(),
-            _ => {
-                let place = reading.place_of(&shown.path);
-                self.last = Some((shown.path.clone(), place.clone()));
-                place
-            }
-        };
-        let name = self.shared(shown.path.name().unwrap_or_default());
-        let asset = match &shown.asset {
-            Some(asset) => asset.clone(),
-            None => self.shared(shown.path.root_prim_name().unwrap_or_default()),
-        };
-        (name, place, asset)
-    }
-
-    fn shared(&mut self, text: &str) -> Arc<str> {
-        if let Some(known) = self.names.get(text) {
-            return known.clone();
-        }
-        let shared: Arc<str> = text.into();
-        self.names.insert(text.to_owned(), shared.clone());
-        shared
-    }
 }
 
 /// True where something stands elsewhere at another time of the shutter.
@@ -212,12 +131,4 @@ fn moves(scene: &SceneDesc) -> bool {
     scene.instances.iter().any(|instance| !instance.motion.is_empty())
         || scene.meshes.iter().any(|mesh| !mesh.motion.is_empty())
         || scene.cameras.iter().any(|camera| !camera.motion.is_empty())
-}
-
-/// True where `world` is finite, also in single precision, and has an inverse.
-fn usable(world: &DAffine3) -> bool {
-    let m = world.matrix3;
-    let size = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    let in_range = world.to_cols_array().iter().all(|v| v.abs() < 1e30);
-    in_range && size > 1e-60 && m.determinant().abs() > 1e-12 * size
 }

@@ -3,10 +3,11 @@
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 
-use openusd::sdf::{self, FromValue};
+use openusd::sdf::{self, FromValue, ValueKind};
 use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
+use super::authored::Authored;
 use super::units::Units;
 use super::{diagnostics, variants};
 use crate::error::{Error, Place, Result, Warnings};
@@ -32,6 +33,7 @@ pub(super) struct Reading<'a> {
     pub blender: bool,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
+    authored: RefCell<Authored>,
 }
 
 impl<'a> Reading<'a> {
@@ -64,6 +66,7 @@ impl<'a> Reading<'a> {
             to_world: units.to_world(),
             blender,
             warnings: RefCell::new(warnings),
+            authored: RefCell::default(),
         })
     }
 
@@ -89,7 +92,11 @@ impl<'a> Reading<'a> {
         T: FromValue,
         T::Error: Into<openusd::Error>,
     {
-        self.value_of(&prim.attribute(name), self.time)
+        let Some(fallback) = self.authored.borrow_mut().fallback(prim, name) else {
+            return self.value_of(&prim.attribute(name), self.time);
+        };
+        let value = fallback.filter(|value| T::accepts_kind(ValueKind::from(value)))?;
+        T::try_from(value).ok()
     }
 
     /// The value of `attribute` at `time`; as [`value`](Self::value).

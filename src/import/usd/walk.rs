@@ -4,14 +4,17 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use openusd::sdf::{self, Specifier};
+use openusd::sdf::{Path, Specifier};
 use openusd::tf::Token;
 use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
-use super::bindings::{self, Bindings, Scope};
+use super::bindings::{Bindings, Scope};
 use super::inherit::{Clock, Context, Pose};
+use super::kinds::{Kind, Kinds, Role};
+use super::prototypes::Prototypes;
 use super::stage::Reading;
+use super::{instancer, prototypes};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -23,7 +26,7 @@ pub(super) struct Placed {
     /// Where its properties are read; for what is instanced, below the first of the instances.
     pub prim: Prim,
     /// Where the user sees it.
-    pub path: sdf::Path,
+    pub path: Path,
     /// Its schema, as "Mesh".
     pub kind: Rc<str>,
     /// Object to world: y up, metres.
@@ -31,8 +34,8 @@ pub(super) struct Placed {
     /// The same at the ends and samples of the shutter; empty for what does not move.
     pub motion: Vec<Motion<DAffine3>>,
     /// The material bound to it, by the rules of UsdShade.
-    pub material: Option<sdf::Path>,
-    /// What it inherits; the same pointer for all instances of a prototype in the same surroundings.
+    pub material: Option<Path>,
+    /// What it inherits.
     pub primvars: Rc<Vec<Primvar>>,
     /// False for what no ray sees.
     pub visible: bool,
@@ -41,7 +44,7 @@ pub(super) struct Placed {
 /// What all instances of a prim have in common.
 pub(super) struct Leaf {
     pub prim: Prim,
-    pub kind: Rc<str>,
+    pub kind: Arc<str>,
     pub primvars: Rc<Vec<Primvar>>,
     pub bindings: Option<Rc<Bindings>>,
     pub visible: bool,
@@ -54,7 +57,7 @@ pub(super) struct Leaf {
 pub(super) struct Shown {
     pub leaf: Rc<Leaf>,
     /// Where the user sees it.
-    pub path: sdf::Path,
+    pub path: Path,
     pub pose: Pose,
     /// Name of its asset.
     pub asset: Option<Arc<str>>,
@@ -62,121 +65,73 @@ pub(super) struct Shown {
     pub scope: Option<Rc<Scope>>,
 }
 
-/// Everything that is shown, parents before children, in the order of the stage.
-pub(super) struct Walked {
-    pub shown: Vec<Shown>,
-    /// The times of the shutter at which poses are known, in time codes after the frame.
-    pub times: Vec<f64>,
-}
-
-impl Walked {
-    /// `shown` for those who read it.
-    pub fn placed(&self, reading: &Reading<'_>, shown: &Shown) -> Placed {
-        let leaf = &shown.leaf;
-        Placed {
-            prim: leaf.prim.clone(),
-            path: shown.path.clone(),
-            kind: leaf.kind.clone(),
-            world: shown.pose.world,
-            motion: self.motion(shown),
-            material: bindings::bound(reading, leaf.bindings.as_ref(), shown.scope.as_ref(), leaf.prim.path()),
-            primvars: leaf.primvars.clone(),
-            visible: leaf.visible,
-        }
-    }
-
-    /// The transforms of `shown` during the shutter.
-    pub fn motion(&self, shown: &Shown) -> Vec<Motion<DAffine3>> {
-        let values = shown.pose.motion.iter().flat_map(|values| values.iter());
-        self.times.iter().zip(values).map(|(&time, &value)| Motion { time, value }).collect()
-    }
-}
-
-/// Walks the stage; twice where something moves while the shutter of a camera is open, which is known only
-/// when all was seen.
-pub(super) fn walk(reading: &Reading<'_>) -> Walked {
-    let mut walk = Walk::new(Clock::still(reading));
-    let shown = walk.stage();
-    let shutter = shutter(reading, &shown);
-    reading.shutter.set(shutter);
-    if let Some(clock) = shutter.and_then(|shutter| walk.clock.moving(shutter)) {
-        let mut walk = Walk::new(clock);
-        let shown = walk.stage();
-        return Walked { shown, times: walk.clock.times };
-    }
-    Walked { shown, times: Vec::new() }
-}
-
-/// From when to when a camera's shutter is open, in time codes after the frame.
-fn shutter(reading: &Reading<'_>, shown: &[Shown]) -> Option<[f64; 2]> {
-    // Without a frame there is nothing to be before or after.
-    if reading.time.is_earliest_time() {
-        return None;
-    }
-    let cameras = shown.iter().filter(|shown| &*shown.leaf.kind == "Camera");
-    let of = |camera: &Shown| {
-        let end = |name| reading.value::<f64>(&camera.leaf.prim, name).filter(|t| t.is_finite()).unwrap_or(0.0);
-        [end("shutter:open"), end("shutter:close")]
-    };
-    let open = cameras.map(of).filter(|[open, close]| open < close);
-    open.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-}
-
-/// A prototype as the first of its instances was walked.
-struct Prototype {
-    /// That instance.
-    first: Prim,
-    /// What it shows in each of the surroundings that were met.
-    shown: Vec<(Context, Rc<Vec<Shown>>)>,
-}
-
-/// A walk of the stage.
+/// A walk of the stage, or of a part of it.
 pub(super) struct Walk<'r, 'a> {
     pub reading: &'r Reading<'a>,
     pub clock: Clock<'r, 'a>,
-    kinds: HashMap<Token, Kind>,
-    prototypes: HashMap<sdf::Path, Prototype>,
-    /// Prototypes of point instancers, walked; `None` while they are.
-    pub pointed: HashMap<sdf::Path, Option<Rc<Vec<Shown>>>>,
+    pub prototypes: Prototypes,
+    /// Instances that are left to another walk, and how many prims were shown before them; `None` where
+    /// they are shown at once.
+    pub later: Option<Vec<(usize, Path)>>,
+    kinds: Kinds,
+    contexts: HashMap<Path, Rc<Context>>,
     count: usize,
 }
 
-/// What the walk does at a prim of a type.
-#[derive(Clone)]
-enum Role {
-    /// It shows nothing, its children may.
-    Group,
-    /// It and all below are no part of the picture, or are read from elsewhere.
-    Aside,
-    /// Its children are prototypes.
-    Instancer,
-    /// Something to see, or to see by.
-    Leaf,
-}
-
-#[derive(Clone)]
-struct Kind {
-    name: Rc<str>,
-    role: Role,
-    imageable: bool,
-}
-
 impl<'r, 'a> Walk<'r, 'a> {
-    fn new(clock: Clock<'r, 'a>) -> Self {
-        let (kinds, prototypes, pointed) = Default::default();
-        Self { reading: clock.reading, clock, kinds, prototypes, pointed, count: 0 }
+    pub fn new(clock: Clock<'r, 'a>) -> Self {
+        let (prototypes, kinds, contexts) = Default::default();
+        Self { reading: clock.reading, clock, prototypes, later: None, kinds, contexts, count: 0 }
     }
 
-    fn stage(&mut self) -> Vec<Shown> {
+    /// Everything in the stage, parents before children.
+    pub fn stage(&mut self) -> Vec<Shown> {
         let mut shown = Vec::new();
-        let root = Context::root(Pose::still(self.reading.to_world));
-        if let Ok(prim) = self.reading.stage.prim(sdf::Path::abs_root()) {
-            self.below(&prim, root, false, &mut shown);
+        if let Ok(root) = self.reading.stage.prim(Path::abs_root()) {
+            self.below(&root, self.root(), false, &mut shown);
         }
         shown
     }
 
-    /// Everything below `prim`, whose children take `context` from it.
+    /// What the prims in the root take from it.
+    pub fn root(&self) -> Context {
+        Context::root(Pose::still(self.reading.to_world))
+    }
+
+    /// What the children of the prim at `path` take from it, by its ancestors.
+    pub fn context_at(&mut self, path: &Path) -> Rc<Context> {
+        if let Some(known) = self.contexts.get(path) {
+            return known.clone();
+        }
+        let above = path.parent().filter(|_| !path.is_abs_root());
+        let prim = self.reading.stage.prim(path).ok();
+        let context = match (above, prim) {
+            (Some(above), Some(prim)) => {
+                let outer = self.context_at(&above);
+                let names = prim.authored_property_names().unwrap_or_default();
+                let kind = self.kinds.of(self.reading, &prim);
+                let mut inner = outer.enter(&mut self.clock, &prim, &kind, &names);
+                inner.hand_down_primvars(self.reading, &prim, &names);
+                inner
+            }
+            _ => self.root(),
+        };
+        let context = Rc::new(context);
+        self.contexts.insert(path.clone(), context.clone());
+        context
+    }
+
+    /// The prim at `path` and everything below it.
+    pub fn from(&mut self, path: &Path, shown: &mut Vec<Shown>) {
+        let above = self.context_at(&path.parent().unwrap_or_default());
+        let Ok(prim) = self.reading.stage.prim(path) else { return };
+        if let Some(context) = self.enter(&prim, &above, false, shown) {
+            self.below(&prim, context, false, shown);
+        }
+    }
+
+    /// Everything below `prim`, whose children take `context` from it. `overs` are shown like `def`s in the
+    /// prototypes of point instancers.
     pub fn below(&mut self, prim: &Prim, context: Context, overs: bool, shown: &mut Vec<Shown>) {
         let mut stack = Vec::new();
         let push = |stack: &mut Vec<(Prim, Rc<Context>)>, prim: &Prim, context: Context| {
@@ -193,7 +148,7 @@ impl<'r, 'a> Walk<'r, 'a> {
     }
 
     /// `prim` alone, or all of it where it is an instance; gives what its children take from it, where
-    /// there is something to see in them.
+    /// there may be something to see in them.
     pub fn enter(&mut self, prim: &Prim, context: &Context, overs: bool, shown: &mut Vec<Shown>) -> Option<Context> {
         let reading = self.reading;
         let defined = match prim.specifier().ok().flatten() {
@@ -204,23 +159,28 @@ impl<'r, 'a> Walk<'r, 'a> {
         if !defined || !prim.is_active().unwrap_or(false) {
             return None;
         }
-        let kind = self.kind(prim);
-        if let Role::Aside = kind.role {
+        let kind = self.kinds.of(reading, prim);
+        if kind.role == Role::Aside {
+            return None;
+        }
+        let is_instance = prim.is_instance().unwrap_or(false);
+        if let Some(later) = self.later.as_mut().filter(|_| is_instance || kind.role == Role::Instancer) {
+            later.push((shown.len(), prim.path().clone()));
             return None;
         }
         let names = prim.authored_property_names().unwrap_or_default();
-        let mut inner = context.enter(&mut self.clock, prim, kind.imageable, &names);
+        let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
         self.warn_of_draw_mode(prim, &names);
-        if prim.is_instance().unwrap_or(false) {
+        if is_instance {
             inner.hand_down_primvars(reading, prim, &names);
-            self.instance(prim, inner, shown);
+            prototypes::instance(self, prim, inner, shown);
             return None;
         }
         match kind.role {
             Role::Leaf => self.leaf(prim, &kind, context, &inner, &names, shown),
             Role::Instancer => {
                 if !inner.hidden(reading) {
-                    super::instancer::walk(self, prim, &inner, shown);
+                    instancer::walk(self, prim, &inner, shown);
                 }
                 return None;
             }
@@ -240,18 +200,18 @@ impl<'r, 'a> Walk<'r, 'a> {
         shown: &mut Vec<Shown>,
     ) {
         let hidden = inner.hidden(self.reading);
+        // A camera may be looked through whether it is seen or not.
         if hidden && &*kind.name != "Camera" {
             return;
         }
+        let is_link = |n: &Token| n.starts_with("collection:lightLink:") || n.starts_with("collection:shadowLink:");
         let leaf = Leaf {
             prim: prim.clone(),
             kind: kind.name.clone(),
             primvars: outer.primvars.clone(),
             bindings: inner.bindings.clone(),
             visible: !hidden,
-            linked: names
-                .iter()
-                .any(|n| n.starts_with("collection:lightLink:") || n.starts_with("collection:shadowLink:")),
+            linked: names.iter().any(is_link),
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
         self.show(Shown { leaf: Rc::new(leaf), path, pose: inner.pose.clone(), asset, scope: None }, shown);
@@ -260,7 +220,7 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// Adds one.
     pub fn show(&mut self, one: Shown, shown: &mut Vec<Shown>) {
         self.count += 1;
-        if self.count > MOST_PRIMS {
+        if self.full() {
             let what = format!("more than {MOST_PRIMS} prims are shown; the rest is left out");
             self.reading.warnings.borrow_mut().push(&self.reading.place, what);
             return;
@@ -278,109 +238,15 @@ impl<'r, 'a> Walk<'r, 'a> {
         self.count > MOST_PRIMS
     }
 
-    /// What the instance `prim` shows: what the first instance of its prototype in like surroundings does.
-    fn instance(&mut self, prim: &Prim, context: Context, shown: &mut Vec<Shown>) {
-        let Some(root) = prim.prototype().ok().flatten() else { return };
-        let known = self.prototypes.get(&root);
-        let first = known.map_or(prim, |known| &known.first).clone();
-        let alike = known.and_then(|known| known.shown.iter().find(|(other, _)| self.alike(other, &context)));
-        let prototype = match alike {
-            Some((_, shown)) => shown.clone(),
-            None => {
-                let mut inside = Vec::new();
-                let pose = Pose::still(DAffine3::IDENTITY);
-                let within = Context { pose, bindings: None, asset: None, ..context.clone() };
-                self.below(&first, within, false, &mut inside);
-                self.forget(inside.len());
-                let inside = Rc::new(inside);
-                let prototype = Prototype { first: first.clone(), shown: Vec::new() };
-                let known = self.prototypes.entry(root).or_insert(prototype);
-                known.shown.push((context.clone(), inside.clone()));
-                inside
-            }
-        };
-        let (walked, instance) = (first.path().clone(), prim.path().clone());
-        let scope = Rc::new(Scope { outer: None, bindings: context.bindings, walked: walked.clone(), instance });
-        let mut scopes: Vec<(Rc<Scope>, Rc<Scope>)> = Vec::new();
-        for inner in prototype.iter() {
-            if self.full() {
-                break;
-            }
-            let scope = match &inner.scope {
-                None => scope.clone(),
-                Some(inside) => match scopes.iter().find(|(known, _)| Rc::ptr_eq(known, inside)) {
-                    Some((_, scope)) => scope.clone(),
-                    None => {
-                        let both = Scope::within(Some(inside), &scope);
-                        scopes.push((inside.clone(), both.clone()));
-                        both
-                    }
-                },
-            };
-            let path = inner.path.replace_prefix(&walked, prim.path()).unwrap_or_else(|| inner.path.clone());
-            let asset = inner.asset.clone().or_else(|| context.asset.clone());
-            let pose = context.pose.place(&inner.pose);
-            self.show(Shown { leaf: inner.leaf.clone(), path, pose, asset, scope: Some(scope) }, shown);
-        }
-    }
-
-    /// True where a prototype looks the same in both surroundings.
-    fn alike(&self, a: &Context, b: &Context) -> bool {
-        if !a.shows_like(b) || a.primvars.len() != b.primvars.len() {
-            return false;
-        }
-        Rc::ptr_eq(&a.primvars, &b.primvars) || a.primvars.iter().zip(&*b.primvars).all(|(a, b)| self.equal(a, b))
-    }
-
-    fn equal(&self, a: &Primvar, b: &Primvar) -> bool {
-        let (of_a, of_b) = (a.attribute(), b.attribute());
-        if of_a.path() == of_b.path() {
-            return true;
-        }
-        let value = |primvar: &Primvar| primvar.compute_flattened::<sdf::Value>(self.reading.time).ok();
-        let same_type = of_a.type_name().ok() == of_b.type_name().ok();
-        of_a.name() == of_b.name() && same_type && value(a) == value(b)
-    }
-
     fn warn_of_draw_mode(&self, prim: &Prim, names: &[Token]) {
         if !names.iter().any(|name| name.as_str() == "model:drawMode") {
             return;
         }
         let Some(mode) = self.reading.value::<Token>(prim, "model:drawMode") else { return };
-        let applied = || self.reading.value::<bool>(prim, "model:applyDrawMode") == Some(true);
-        if matches!(mode.as_str(), "bounds" | "origin" | "cards") && (applied() || prim.is_component().unwrap_or(false))
-        {
+        let applied = self.reading.value::<bool>(prim, "model:applyDrawMode") == Some(true);
+        let is_mode = matches!(mode.as_str(), "bounds" | "origin" | "cards");
+        if is_mode && (applied || prim.is_component().unwrap_or(false)) {
             self.reading.warn(prim.path(), format!("draw mode '{mode}' is not drawn; the prim's geometry is"));
         }
-    }
-
-    fn kind(&mut self, prim: &Prim) -> Kind {
-        let token = prim.type_name().ok().flatten().unwrap_or_default();
-        if let Some(kind) = self.kinds.get(&token) {
-            return kind.clone();
-        }
-        let registry = self.reading.stage.schema_registry();
-        // A type that is not known may name others that it can be taken for.
-        let schema =
-            if registry.is_concrete_type(&token) { Some(token.clone()) } else { prim.schema_type().ok().flatten() };
-        let role = match (schema.as_ref().unwrap_or(&token)).as_str() {
-            "" | "Xform" | "Scope" | "SkelRoot" => Role::Group,
-            "Material" | "NodeGraph" | "Shader" | "GeomSubset" | "Skeleton" | "SkelAnimation" | "BlendShape"
-            | "RenderSettings" | "RenderProduct" | "RenderVar" | "RenderPass" | "SpatialAudio" => Role::Aside,
-            physics if physics.starts_with("Physics") => Role::Aside,
-            "PointInstancer" => Role::Instancer,
-            _ if schema.is_some() => Role::Leaf,
-            _ => {
-                let what = format!("type '{token}' is of no schema that is known here; the prim itself shows nothing");
-                self.reading.warn(prim.path(), what);
-                Role::Group
-            }
-        };
-        let imageable = schema.as_ref().is_some_and(|schema| registry.is_a(schema, &Token::from("Imageable")));
-        let kind = Kind { name: schema.as_ref().unwrap_or(&token).as_str().into(), role, imageable };
-        if schema.as_ref() == Some(&token) || token.as_str().is_empty() {
-            self.kinds.insert(token, kind.clone());
-        }
-        kind
     }
 }

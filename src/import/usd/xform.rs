@@ -1,15 +1,16 @@
 //! Local transforms: the ordered operations of UsdGeomXformable.
 
+use openusd::gf::Matrix4d;
 use openusd::sdf;
+use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, TimeCode};
-use openusd_schemas::geom::{XformOp, Xformable, XformableExt};
+use openusd_schemas::geom::XformOp;
 
 use super::stage::Reading;
 use crate::math::{DAffine3, DMat3, DVec3};
 
-/// The operations of one prim.
-///
-/// The crate's own `XformQuery` knows nothing of values that are held up to a block.
+/// The operations of one prim. The crate's own `XformQuery` is slower, and knows nothing of values that are
+/// held up to a block.
 #[derive(Clone)]
 pub(super) struct Xform {
     prim: Prim,
@@ -19,16 +20,26 @@ pub(super) struct Xform {
 }
 
 impl Xform {
-    /// That of `prim`; `None` where it has none.
-    pub fn of(reading: &Reading<'_>, prim: &Prim) -> Option<Self> {
-        let ops = Xformable::from_prim(prim.clone()).and_then(|x| x.map(|x| x.ordered_xform_ops()).transpose());
-        match ops {
-            Ok(ops) => ops.map(|(ops, resets)| Self { prim: prim.clone(), ops, resets }),
-            Err(error) => {
-                reading.warn(prim.path(), format!("{error}; its transform is left out"));
-                None
+    /// That of `prim`, whose authored properties are `names`; `None` where it has none.
+    pub fn of(reading: &Reading<'_>, prim: &Prim, names: &[Token]) -> Option<Self> {
+        let order: Vec<Token> = reading.value_of(&prim.attribute("xformOpOrder"), reading.time)?;
+        let mut xform = Self { prim: prim.clone(), ops: Vec::new(), resets: false };
+        for entry in &order {
+            if entry.as_str() == "!resetXformStack!" {
+                xform.resets = true;
+                xform.ops.clear();
+                continue;
+            }
+            let (inverse, name) = match entry.strip_prefix("!invert!") {
+                Some(name) => (true, Token::from(name)),
+                None => (false, entry.clone()),
+            };
+            // As in OpenUSD, an operation without its attribute does nothing.
+            if names.contains(&name) {
+                xform.ops.push(XformOp::new(&prim.attribute(name), inverse));
             }
         }
+        Some(xform)
     }
 
     /// Object to parent at `time`.
@@ -41,7 +52,12 @@ impl Xform {
             if ops.next_if(undone).is_some() {
                 continue;
             }
-            match op.op_transform(held(op.attribute(), time)) {
+            let transform = match op.op_transform(time) {
+                // Also that of an operation without value.
+                Ok(matrix) if matrix == Matrix4d::IDENTITY => op.op_transform(held(op.attribute(), time)),
+                other => other,
+            };
+            match transform {
                 Ok(matrix) => local = local * affine(&matrix.0),
                 Err(error) => reading.warn(self.prim.path(), format!("{error}; that is left out")),
             }

@@ -1,0 +1,153 @@
+//! What is shown, with everything that only the thread of its stage can tell: materials' paths, shapes as
+//! authored. From here on nothing is bound to a thread.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use openusd::sdf::Path;
+
+use super::bindings::{self, Bindings, Scope};
+use super::inherit::{Clock, Pose};
+use super::light::ShapeLight;
+use super::shape::{self, Source};
+use super::stage::Reading;
+use super::walk::{Leaf, Shown, Walk};
+
+/// What all places in which a prim is shown have in common.
+pub(super) struct Look {
+    /// Where its properties are read.
+    pub prim: Path,
+    pub kind: Arc<str>,
+    pub visible: bool,
+    /// True where a collection may say what the light that it emits reaches.
+    pub linked: bool,
+    pub material: Option<Path>,
+    /// What it is a picture of; `None` for lights and cameras.
+    pub shape: Option<ShapeLook>,
+}
+
+/// A shape with its materials.
+pub(super) struct ShapeLook {
+    /// Index of the batch and of the shape in it.
+    pub shape: (usize, usize),
+    /// Materials of its subsets.
+    pub subsets: Vec<Option<Path>>,
+    /// The light that it is.
+    pub light: Option<ShapeLight>,
+}
+
+/// A shape as read.
+pub(super) struct Read {
+    pub prim: Path,
+    /// The primvars that it inherits.
+    pub primvars: Vec<Path>,
+    /// Taken by the first who builds it.
+    pub source: Option<Source>,
+}
+
+/// A prim in one place.
+pub(super) struct Found {
+    pub look: Arc<Look>,
+    /// Where the user sees it.
+    pub path: Path,
+    pub pose: Pose,
+    /// Name of its asset.
+    pub asset: Option<Arc<str>>,
+}
+
+/// Everything that is shown, parents before children.
+#[derive(Default)]
+pub(super) struct Haul {
+    pub found: Vec<Found>,
+    /// In batches.
+    pub shapes: Vec<Vec<Read>>,
+    /// The times of the shutter at which poses are known, in time codes after the frame.
+    pub times: Vec<f64>,
+}
+
+/// Reads what a walk finds.
+pub(super) struct Gatherer<'r, 'a> {
+    pub walk: Walk<'r, 'a>,
+    /// True for the types that are no shapes.
+    aside: fn(&str) -> bool,
+    known: HashMap<(*const Leaf, *const Scope), Known>,
+    shapes: HashMap<(Path, Vec<Path>), Option<Rc<Subsets>>>,
+}
+
+/// A look, and what keeps the addresses that it is known by.
+struct Known {
+    _leaf: Rc<Leaf>,
+    _scope: Option<Rc<Scope>>,
+    look: Option<Arc<Look>>,
+}
+
+/// A shape that was read, and its subsets.
+struct Subsets {
+    shape: (usize, usize),
+    each: Vec<(Path, Option<Rc<Bindings>>)>,
+}
+
+impl<'r, 'a> Gatherer<'r, 'a> {
+    pub fn new(clock: Clock<'r, 'a>, aside: fn(&str) -> bool) -> Self {
+        Self { walk: Walk::new(clock), aside, known: HashMap::new(), shapes: HashMap::new() }
+    }
+
+    /// Adds `shown` to `found`, and shapes that were not read before to `batch`, which has the index
+    /// `number`.
+    pub fn resolve(&mut self, shown: Vec<Shown>, number: usize, batch: &mut Vec<Read>, found: &mut Vec<Found>) {
+        for one in shown {
+            // Where no binding of the surroundings has a say, all instances look the same.
+            let scope = one.scope.as_ref().filter(|scope| scope.matters());
+            let key = (Rc::as_ptr(&one.leaf), scope.map_or(std::ptr::null(), Rc::as_ptr));
+            if !self.known.contains_key(&key) {
+                let look = self.look(&one, number, batch).map(Arc::new);
+                let known = Known { _leaf: one.leaf.clone(), _scope: scope.cloned(), look };
+                self.known.insert(key, known);
+            }
+            if let Some(look) = self.known.get(&key).and_then(|known| known.look.clone()) {
+                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset });
+            }
+        }
+    }
+
+    fn look(&mut self, shown: &Shown, number: usize, batch: &mut Vec<Read>) -> Option<Look> {
+        let reading = self.walk.reading;
+        let leaf = &*shown.leaf;
+        let material = |bindings: Option<&Rc<Bindings>>, path: &Path| {
+            bindings::bound(reading, bindings, shown.scope.as_ref(), path)
+        };
+        let shape = if (self.aside)(&leaf.kind) {
+            None
+        } else {
+            let primvars: Vec<Path> = leaf.primvars.iter().map(|p| p.attribute().path().clone()).collect();
+            let key = (leaf.prim.path().clone(), primvars);
+            let known = self.shapes.entry(key.clone());
+            let read = known.or_insert_with(|| {
+                let source = shape::read(reading, &leaf.prim, &leaf.primvars)?;
+                let each = source.subsets().iter().map(|path| (path.clone(), subset(reading, leaf, path))).collect();
+                batch.push(Read { prim: key.0, primvars: key.1, source: Some(source) });
+                Some(Rc::new(Subsets { shape: (number, batch.len() - 1), each }))
+            });
+            let read = read.as_ref()?;
+            let subsets = read.each.iter().map(|(path, bindings)| material(bindings.as_ref(), path)).collect();
+            let light = ShapeLight::of(reading, &leaf.prim, &shown.path);
+            Some(ShapeLook { shape: read.shape, subsets, light })
+        };
+        Some(Look {
+            prim: leaf.prim.path().clone(),
+            kind: leaf.kind.clone(),
+            visible: leaf.visible,
+            linked: leaf.linked,
+            material: material(leaf.bindings.as_ref(), leaf.prim.path()),
+            shape,
+        })
+    }
+}
+
+/// The bindings of a subset.
+fn subset(reading: &Reading<'_>, leaf: &Leaf, path: &Path) -> Option<Rc<Bindings>> {
+    let prim = reading.stage.prim(path).ok()?;
+    let names = prim.authored_property_names().unwrap_or_default();
+    Bindings::of(reading, &prim, &names, leaf.bindings.clone())
+}
