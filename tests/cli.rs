@@ -212,7 +212,7 @@ fn bad_input_gets_one_clear_error_that_names_the_file() {
     let needs = changed("needs.glb", &|json| json["extensionsRequired"] = json!(["EXT_of_the_future"]));
     let no_json = folder.write("x.gltf", "{ not json");
     let no_scene = folder.write("x.abc", "?");
-    let no_usd = folder.write("x.usda", "#usda 1.0");
+    let no_usd = folder.write("x.usda", "#usda 1.0\ndef Mesh {");
     let no_sky = folder.write("bad.hdr", "#?RADIANCE\nrubbish");
     let cases: [(&[&str], &str); 11] = [
         (&["/no/such/scene.glb"], "/no/such/scene.glb"),

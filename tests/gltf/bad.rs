@@ -13,7 +13,7 @@ fn a_missing_file_and_a_foreign_extension() {
     let open = |path: &str| scene(path.as_ref(), &ImportOptions::default(), &mut Default::default()).unwrap_err();
     let error = open("no/such/file.glb");
     assert!(matches!(error, Error::Io { .. }) && error.to_string().contains("no/such/file.glb"), "{error}");
-    assert!(matches!(open("scene.usda"), Error::Unsupported { .. }));
+    assert!(matches!(open("no/such/scene.usda"), Error::Io { .. }));
     assert!(matches!(open("scene.fbx"), Error::Unsupported { .. }));
 }
 

@@ -112,8 +112,6 @@ fn lights_and_cameras(
             kind: Rc::from(&*found.look.kind),
             world: found.pose.world,
             motion: moving(&haul.times, &found.pose),
-            material: found.look.material.clone(),
-            primvars: Rc::default(),
             visible: found.look.visible,
         };
         match &*placed.kind {

@@ -99,8 +99,12 @@ fn wants(materials: &Materials<'_>, slots: &[Option<u32>]) -> Wants {
     // The UV pass shows the first set, whatever the materials use.
     let used: Vec<u32> = each().flat_map(|m| materials.used_uv_sets(m)).collect();
     let sets = 1 + used.iter().max().map_or(0, |&set| set as usize);
+    let name = |set: u32| {
+        let looked_at = set == 0 || used.contains(&set);
+        if looked_at { materials.uv_sets[set as usize].clone() } else { "".into() }
+    };
     Wants {
-        uv_sets: materials.uv_sets.iter().take(sets).cloned().collect(),
+        uv_sets: (0..sets as u32).map(name).collect(),
         spare_first_set: !used.contains(&0),
         tangents: each().find_map(|m| materials.tangent_uv_set(m)),
         // Colours of a mesh are those of all of it: they must not tint a material that has its own.

@@ -33,10 +33,6 @@ pub(super) struct Placed {
     pub world: DAffine3,
     /// The same at the ends and samples of the shutter; empty for what does not move.
     pub motion: Vec<Motion<DAffine3>>,
-    /// The material bound to it, by the rules of UsdShade.
-    pub material: Option<Path>,
-    /// What it inherits.
-    pub primvars: Rc<Vec<Primvar>>,
     /// False for what no ray sees.
     pub visible: bool,
 }

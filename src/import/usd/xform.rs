@@ -58,7 +58,7 @@ impl Xform {
                 other => other,
             };
             match transform {
-                Ok(matrix) => local = local * affine(&matrix.0),
+                Ok(matrix) => local *= affine(&matrix.0),
                 Err(error) => reading.warn(self.prim.path(), format!("{error}; that is left out")),
             }
         }

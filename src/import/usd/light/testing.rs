@@ -43,8 +43,6 @@ impl Stage {
             kind: prim.type_name().unwrap().map(|t| t.to_string()).unwrap_or_default().into(),
             world: reading.to_world * local,
             motion: Vec::new(),
-            material: None,
-            primvars: Vec::new().into(),
             visible: true,
             prim,
         };

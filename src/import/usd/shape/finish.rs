@@ -85,7 +85,8 @@ impl Surface {
         let mut sets = Vec::with_capacity(wants.uv_sets.len());
         for name in &wants.uv_sets {
             let found = uvs.iter().position(|(known, _)| known == name).map(|i| uvs.swap_remove(i).1);
-            if found.is_none() && !(wants.spare_first_set && sets.is_empty()) {
+            let spare = name.is_empty() || (wants.spare_first_set && sets.is_empty());
+            if found.is_none() && !spare {
                 let what = format!("its material looks textures up by primvar {name}, which is absent; (0, 0) is used");
                 warnings.push(place, what);
             }

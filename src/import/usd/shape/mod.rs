@@ -44,7 +44,7 @@ pub(super) enum Source {
 /// What the materials of a shape need of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct Wants {
-    /// UV set `i` is the primvar of this name.
+    /// UV set `i` is the primvar of this name; empty for one that nothing looks at.
     pub uv_sets: Vec<Arc<str>>,
     /// True where no material looks at the first set; the UV pass shows it if it is there.
     pub spare_first_set: bool,
