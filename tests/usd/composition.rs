@@ -67,6 +67,10 @@ fn the_command_line_selects_variants() {
     assert!(error("/Car{color=red}").ends_with("/Car has no variant set 'color'; it has size"));
     assert!(error("/Car{size=huge}").ends_with("variant set 'size' of /Car has no 'huge'; there are large, small"));
     assert!(error("large").ends_with("expected /Prim{set=choice}"));
+    // Whatever the root layer is kept in.
+    for name in ["variants.usdc", "variants.usdz"] {
+        assert_eq!(load(name, &select(&["/Car{size=large}{trim=rich}"])).origin("/Car/T"), [2.0, 4.0, 0.0], "{name}");
+    }
     // The file on disk is as it was.
     assert_eq!(origin(&[]), [1.0, 0.0, 0.0]);
 }

@@ -37,7 +37,7 @@ fn a_prototype_has_its_materials_once() {
         ["/World/One/A/T", "/World/One/B/T", "/World/Two/A/T", "/World/Colored/T"].map(of).into();
     assert_eq!(own.len(), 1, "{own:?}");
     // What is bound to one instance, more strongly than what is bound within.
-    assert!(loaded.material("/World/Bound/T").contains("Strong"), "{}", loaded.material("/World/Bound/T"));
+    assert_eq!(loaded.material("/World/Bound/T"), "Strong");
 }
 
 /// UsdGeomPointInstancer::ComputeInstanceTransformsAtTime of `points.usda`, in rows, with the prototypes' own
@@ -74,4 +74,54 @@ fn point_instancers_place_their_prototypes() {
         let meshes: BTreeSet<u32> = loaded.scene.instances.iter().map(|i| i.mesh).collect();
         assert_eq!(meshes.len(), 2);
     }
+}
+
+#[test]
+fn a_prototype_that_is_shown_by_an_instance_of_an_instancer_is_shown_once_at_its_own_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    // An instance of a class that holds an instancer whose prototype stands beside it.
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+class Xform "_Bed" {
+    def Mesh "Flower" {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        uniform token subdivisionScheme = "none"
+    }
+    def PointInstancer "Bed" {
+        rel prototypes = </_Bed/Flower>
+        int[] protoIndices = [0, 0]
+        point3f[] positions = [(1, 0, 0), (2, 0, 0)]
+    }
+}
+def Xform "One" ( instanceable = true inherits = </_Bed> ) {
+    double3 xformOp:translate = (0, 10, 0)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+def Xform "Two" ( instanceable = true inherits = </_Bed> ) {
+    double3 xformOp:translate = (0, 20, 0)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+"#;
+    std::fs::write(&path, text).unwrap();
+    let loaded = super::try_load(&path, &ImportOptions::default()).unwrap();
+    loaded.said_nothing();
+    let places: Vec<(&str, [f64; 3])> = loaded
+        .scene
+        .instances
+        .iter()
+        .map(|i| (i.place.node.as_deref().unwrap(), i.transform.translation.to_array()))
+        .collect();
+    let expected = [
+        ("/One/Flower", [0.0, 10.0, 0.0]),
+        ("/One/Bed/Flower", [1.0, 10.0, 0.0]),
+        ("/One/Bed/Flower", [2.0, 10.0, 0.0]),
+        ("/Two/Flower", [0.0, 20.0, 0.0]),
+        ("/Two/Bed/Flower", [1.0, 20.0, 0.0]),
+        ("/Two/Bed/Flower", [2.0, 20.0, 0.0]),
+    ];
+    assert_eq!(places, expected);
+    assert_eq!(loaded.scene.meshes.len(), 1);
 }

@@ -2,12 +2,12 @@
 //! for the same file of `stages/`.
 
 mod bad;
+mod bindings;
 mod composition;
 mod instances;
-mod probe;
+mod large;
 mod shown;
 mod times;
-mod walk_time;
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,8 @@ impl Loaded {
     /// Name of the material of an instance's first slot.
     fn material(&self, path: &str) -> &str {
         let index = self.one(path).materials[0].expect("a material");
-        &self.scene.materials[index as usize].name
+        let name = &self.scene.materials[index as usize].name;
+        name.rsplit('/').next().unwrap_or(name)
     }
 
     /// The only thing that was said of `what`.

@@ -148,8 +148,7 @@ impl Scope {
     }
 }
 
-/// The material bound to the prim at `path` below `bindings` in `scope`; that of its purpose whose prim is a
-/// material.
+/// The material bound to the prim at `path` below `bindings` in `scope`.
 pub(super) fn bound(
     reading: &Reading<'_>,
     bindings: Option<&Rc<Bindings>>,
@@ -165,10 +164,12 @@ pub(super) fn bound(
             bindings.fold(purpose, path, &mut winner);
         }
         if let Some(material) = winner.strong.or(winner.near) {
-            if is_material(reading, &material) {
-                return Some(material);
+            // As in OpenUSD, what is bound but not there hides what else might be bound.
+            let there = is_material(reading, &material);
+            if !there {
+                reading.warn(path, format!("is bound to {material}, which is not a material; nothing is bound"));
             }
-            reading.warn(path, format!("is bound to {material}, which is not a material; nothing is bound"));
+            return there.then_some(material);
         }
     }
     None

@@ -159,3 +159,59 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<T>(text: &str, look: impl FnOnce(&Reading<'_>) -> T) -> T {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("stage.usda");
+        std::fs::write(&path, text).expect("a file");
+        let options = ImportOptions::default();
+        look(&Reading::open(&path, &options).expect("a stage"))
+    }
+
+    #[test]
+    fn files_of_blender_are_known_by_the_root_layer_alone() {
+        let blender = |text: &str| read(text, |reading| reading.blender);
+        assert!(blender("#usda 1.0\n(\n doc = \"Blender v5.0.1\"\n)\n"));
+        assert!(!blender("#usda 1.0\n(\n doc = \"Made for Blender v5\"\n)\n"));
+        assert!(!blender("#usda 1.0\ndef Xform \"A\" ( doc = \"Blender v5.0.1\" ) {}\n"));
+    }
+
+    /// Units that are not authored are centimetres, y up.
+    #[test]
+    fn units_have_the_fallbacks_of_openusd() {
+        let units = |metadata: &str| {
+            let text = format!("#usda 1.0\n( {metadata} )\n");
+            read(&text, |r| (r.meters, r.to_world.transform_vector3(crate::math::DVec3::Z), r.warnings.borrow().len()))
+        };
+        assert_eq!(units(""), (0.01, crate::math::DVec3::new(0.0, 0.0, 0.01), 0));
+        assert_eq!(units("metersPerUnit = 2 upAxis = \"Z\""), (2.0, crate::math::DVec3::new(0.0, 2.0, 0.0), 0));
+        assert_eq!(units("metersPerUnit = -1"), (0.01, crate::math::DVec3::new(0.0, 0.0, 0.01), 1));
+    }
+
+    #[test]
+    fn values_are_authored_or_fallbacks_or_of_another_type() {
+        let text = "#usda 1.0\ndef Sphere \"S\" { double radius = 3 }\ndef Sphere \"T\" {}\n";
+        read(text, |reading| {
+            let prim = |path: &str| reading.stage.prim(path).expect("a prim");
+            let radius = |path: &str| reading.value::<f64>(&prim(path), "radius");
+            // Once more, since what is authored is kept for the prim that was asked last.
+            for _ in 0..2 {
+                assert_eq!((radius("/S"), radius("/T")), (Some(3.0), Some(1.0)));
+            }
+            assert_eq!(reading.value::<f32>(&prim("/T"), "radius"), None);
+            assert_eq!(reading.value::<bool>(&prim("/T"), "doubleSided"), Some(false));
+            assert_eq!(reading.value::<f64>(&prim("/T"), "no:such"), None);
+        });
+    }
+
+    #[test]
+    fn frames_are_those_that_the_stage_starts_with() {
+        let time = |text: &str| read(text, |reading| reading.time);
+        assert!(time("#usda 1.0\n").is_earliest_time());
+        assert_eq!(time("#usda 1.0\n( startTimeCode = 7 endTimeCode = 9 )\n"), TimeCode::new(7.0));
+    }
+}
