@@ -16,16 +16,19 @@ pub struct Files {
 }
 
 impl Files {
-    /// The files that `args` ask for at `frame`. In a sequence every name gets the frame's number, for
+    /// The files that `args` ask for at `frame`, or the scene by its `own` name. In a sequence every name gets the frame's number, for
     /// a single frame those that hold `#`.
     ///
     /// # Errors
     /// Names of another kind of file, which could be the scene's own, the environment's, or a place
     /// that can't be written.
-    pub fn of(args: &ArgMatches, frame: Option<f64>) -> anyhow::Result<Self> {
+    pub fn of(args: &ArgMatches, frame: Option<f64>, own: Option<&str>) -> anyhow::Result<Self> {
         let sequence = args.contains_id("frames");
         let path = |name: &str| args.get_one::<PathBuf>(name).map(|path| numbered(path, frame, sequence)).transpose();
-        let Some(out) = path("output")? else { bail!("-o OUT.exr is missing") };
+        let own = || own.map(|own| numbered(Path::new(own), frame, sequence)).transpose();
+        let Some(out) = path("output")?.map_or_else(own, |out| Ok(Some(out)))? else {
+            bail!("-o OUT.exr is missing, and the scene names no picture of its own")
+        };
         let preview = path("preview")?;
         require(&out, "exr", "-o")?;
         output::check_writable(&out)?;

@@ -26,8 +26,7 @@ pub fn command() -> Command {
             path("output")
                 .short('o')
                 .value_name("OUT.exr")
-                .required_unless_present("debug-sample")
-                .help("The EXR file to write"),
+                .help("The EXR file to write; needed unless a USD stage names one"),
         )
         .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
         .arg(
@@ -85,6 +84,11 @@ pub fn command() -> Command {
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     let settings = settings(args);
+    let is_usd = scene::path(args).extension().is_some_and(|e| e.to_string_lossy().to_lowercase().starts_with("usd"));
+    if !args.contains_id("output") && !args.contains_id("debug-sample") && !is_usd {
+        let kind = clap::error::ErrorKind::MissingRequiredArgument;
+        command().bin_name("penumbra render").error(kind, "-o OUT.exr is missing").exit();
+    }
     // Import, trees and pyramids run on as many threads as the render.
     if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build_global() {
         bail!("can't start {} threads: {error}", settings.threads);
@@ -129,8 +133,13 @@ fn render_frame(
     told: &mut Warnings,
 ) -> anyhow::Result<Outcome> {
     let sample = args.get_one::<[u64; 3]>("debug-sample");
-    let files = if sample.is_none() { Some(Files::of(args, frame)?) } else { None };
+    // A name that was typed is checked before anything is read.
+    let typed = if args.contains_id("output") { Some(Files::of(args, frame, None)?) } else { None };
     let (mut desc, mut warnings) = scene::load(args, frame)?;
+    let files = match typed {
+        None if sample.is_none() => Some(Files::of(args, frame, desc.render.product.as_deref())?),
+        typed => typed.filter(|_| sample.is_none()),
+    };
     environment::apply(args, &mut desc)?;
     let view = view(args, &desc, &mut warnings);
     let settings = &with_own_passes(args, settings, &desc, &mut warnings);

@@ -11,6 +11,7 @@ use openusd::sdf::{self, Path};
 use openusd::tf::Token;
 use openusd::usd::{CollectionAPI, MembershipQuery, Prim};
 
+use super::material;
 use super::stage::Reading;
 
 /// What every binding's name starts with.
@@ -90,9 +91,14 @@ impl Bindings {
         if let Some(above) = &self.above {
             above.fold(purpose, path, winner);
         }
-        let member = self.collections[purpose].iter().find(|(members, _)| members.is_path_included(path));
-        if let Some(bound) = member.map(|(_, bound)| bound).or(self.direct[purpose].as_ref()) {
+        if let Some(bound) = &self.direct[purpose] {
             winner.add(bound);
+        }
+        // A collection of the same prim takes the place of what is bound directly, its strength included.
+        let member = self.collections[purpose].iter().find(|(members, _)| members.is_path_included(path));
+        if let Some((_, bound)) = member {
+            let stronger = bound.stronger || self.direct[purpose].as_ref().is_some_and(|direct| direct.stronger);
+            winner.add(&Bound { material: bound.material.clone(), stronger });
         }
     }
 }
@@ -175,11 +181,10 @@ pub(super) fn bound(
     None
 }
 
-/// True for a material, and for a path without prim: it may be in a MaterialX document, which composition
-/// can't look into but the materials can.
+/// True for a material, one of a MaterialX document included, which composition can't look into.
 fn is_material(reading: &Reading<'_>, path: &Path) -> bool {
     let kind = reading.stage.prim(path).ok().and_then(|prim| prim.type_name().ok().flatten());
-    kind.is_none_or(|kind| kind.as_str() == "Material")
+    kind.map_or_else(|| material::is_in_document(reading, path), |kind| kind.as_str() == "Material")
 }
 
 fn direct_of(prim: &Prim, name: &Token) -> Option<Bound> {

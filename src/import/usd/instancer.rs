@@ -28,6 +28,10 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         let what = format!("has {count} protoIndices but another number of positions; its instances are left out");
         return reading.warn(prim.path(), what);
     };
+    let colored = |name: &str| prim.attribute(name).has_authored_value().unwrap_or(false);
+    if ["primvars:displayColor", "primvars:displayOpacity"].into_iter().any(colored) {
+        reading.warn(prim.path(), "displayColor and displayOpacity of single instances are not shown");
+    }
     let motion = motion(walk, prim, count);
     let mask = mask(reading, prim, count);
     let mut lost = 0;

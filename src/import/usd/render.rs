@@ -29,6 +29,11 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         values.warn(format!("{count} products: the passes of all go to one file, seen and named as the first says"));
     }
     tell_what_is_not_rendered(&values);
+    for (name, instead) in [("includedPurposes", "--purpose decides"), ("materialBindingPurposes", "full is taken")] {
+        if is_authored(values.prim, name) {
+            values.warn(format!("{name} is not honoured: {instead}"));
+        }
+    }
     if let Some(product) = &product {
         tell_what_is_not_rendered(product);
     }

@@ -1,6 +1,7 @@
 //! A stage that is being read: what every part of the door asks.
 
 use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::path::Path;
 
 use openusd::sdf::{self, FromValue, ValueKind};
@@ -33,6 +34,8 @@ pub(super) struct Reading<'a> {
     pub blender: bool,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
+    /// Whether there is a material of a MaterialX document at a path without prim.
+    pub documents: RefCell<HashMap<sdf::Path, bool>>,
     authored: RefCell<Authored>,
 }
 
@@ -66,6 +69,7 @@ impl<'a> Reading<'a> {
             to_world: units.to_world(),
             blender,
             warnings: RefCell::new(warnings),
+            documents: RefCell::default(),
             authored: RefCell::default(),
         })
     }

@@ -83,7 +83,8 @@ impl Light<'_> {
 
     /// What the emission is multiplied by, given the area in square metres.
     fn per_area(&self, area: f64) -> f64 {
-        if self.normalized() { self.unit() * self.unit() / area } else { 1.0 }
+        // Without area it emits nothing, which is told of where the scene is prepared.
+        if self.normalized() && area > 0.0 { self.unit() * self.unit() / area } else { 1.0 }
     }
 }
 

@@ -46,6 +46,16 @@ struct Found {
     surface: Source,
 }
 
+/// True where a MaterialX document that is referenced above `path` has a material of its name.
+pub(super) fn is_in_document(reading: &Reading<'_>, path: &sdf::Path) -> bool {
+    if let Some(&known) = reading.documents.borrow().get(path) {
+        return known;
+    }
+    let found = mtlx::find(reading, path).is_some();
+    reading.documents.borrow_mut().insert(path.clone(), found);
+    found
+}
+
 /// Materials read so far.
 pub(super) struct Materials<'a> {
     pub reading: &'a Reading<'a>,

@@ -16,7 +16,7 @@ use crate::error::{Place, Warnings};
 use crate::math::Vec3;
 
 /// About how many points the tubes of a prim may have before they get fewer sides.
-const MOST_POINTS: usize = 4_000_000;
+const MOST_POINTS: usize = 1_000_000;
 
 /// Curves as authored.
 pub(in super::super) struct Curves {
@@ -85,6 +85,17 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         primvars.color.iter_mut().for_each(Data::at_joints);
         primvars.opacity.iter_mut().for_each(Data::at_joints);
     }
+    let odd = |count: &&i32| match (basis, wrap) {
+        (Basis::Bezier, Wrap::Closed) => **count % 3 != 0,
+        (Basis::Bezier, _) => **count < 4 || **count % 3 != 1,
+        (Basis::Linear, _) => **count < 2,
+        (_, Wrap::Pinned) => **count < 2,
+        _ => **count < 4,
+    };
+    let odd = counts.iter().filter(odd).count();
+    if odd > 0 {
+        reading.warn(prim.path(), format!("{odd} curves have a number of points that their basis has no use for"));
+    }
     Some(Curves { points, counts, basis, wrap, widths, primvars })
 }
 
@@ -135,7 +146,10 @@ impl Curves {
             warnings.push(place, format!("{dropped} curves have points that are not finite; they are left out"));
         }
         let rings: usize = lines.iter().map(|(_, joints)| joints.len()).sum();
-        let sides = (MOST_POINTS / rings.max(1)).clamp(4, 16) as u32;
+        let sides = (MOST_POINTS / rings.max(1)).clamp(3, 16) as u32;
+        if sides < 6 {
+            warnings.push(place, format!("has {} curves: as tubes of {sides} sides", lines.len()));
+        }
         let mut tubes = Tubes::default();
         for (i, joints) in &lines {
             tubes.push(*i as u32, joints, curves[*i].is_closed(), sides);

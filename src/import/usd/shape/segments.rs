@@ -184,7 +184,7 @@ impl Piece<3> {
         let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
         let scale = (b - a).length() + (c - b).length() + (d - c).length();
         // Thin curves that fill the picture show their chords as well.
-        let tolerance = tolerance.min(2e-3 * scale).max(1e-5 * scale);
+        let tolerance = tolerance.min(1e-2 * scale).max(1e-5 * scale);
         if bend > 1e-6 * scale { (0.75 * bend / tolerance).sqrt().ceil().clamp(1.0, 64.0) as u32 } else { 1 }
     }
 }
