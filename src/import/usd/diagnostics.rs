@@ -8,6 +8,7 @@ use crate::error::Place;
 
 /// Tells of everything that composition left out so far.
 pub(super) fn tell(reading: &Reading<'_>) {
+    let mut told: Vec<(Place, String)> = Vec::new();
     for diagnostic in reading.stage.composition_errors() {
         // MaterialX documents are read by the materials, not by composition.
         if matches!(&diagnostic, CompositionDiagnostic::MalformedLayer { asset_path, .. } if is_document(asset_path)) {
@@ -19,6 +20,11 @@ pub(super) fn tell(reading: &Reading<'_>) {
             None => reading.place.clone(),
         };
         let place = prim.map_or_else(|| place.clone(), |prim| place.at(prim.as_str()));
+        told.push((place, what));
+    }
+    // Composition finds them in an order of its own, which differs from run to run.
+    told.sort_by(|a, b| (&a.0.file, &a.0.node, &a.1).cmp(&(&b.0.file, &b.0.node, &b.1)));
+    for (place, what) in told {
         reading.warnings.borrow_mut().push(&place, what);
     }
 }

@@ -78,7 +78,7 @@ impl Source {
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, primvars: &[Primvar]) -> Option<Source> {
     let kind = prim.type_name().ok()??;
     match kind.as_str() {
-        "Mesh" => mesh::read(reading, prim, primvars, None).map(|mesh| Source::Mesh(Box::new(mesh))),
+        "Mesh" => mesh::read(reading, prim, primvars, reading.shutter.get()).map(|mesh| Source::Mesh(Box::new(mesh))),
         "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars).map(|mesh| Source::Mesh(Box::new(mesh))),
         "BasisCurves" | "HermiteCurves" | "NurbsCurves" => {
             curves::read(reading, prim, primvars, kind.as_str()).map(|curves| Source::Curves(Box::new(curves)))
