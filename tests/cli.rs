@@ -377,3 +377,20 @@ fn numbers_that_make_no_sense_are_refused() {
     assert!(render(&["--frames", "-2--1", "--size", "4x4", "--spp", "1"]).status.success());
     assert_eq!(folder.names(), ["out.-001.exr", "out.-002.exr", "tri.glb"]);
 }
+
+/// Where the command line is silent, a USD stage says where its picture goes and how large it is.
+#[test]
+fn a_stage_names_its_own_picture() {
+    let folder = Folder::new();
+    let stage = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/usd/stages/deforms.usda");
+    let run = |args: &[&str]| {
+        let program = Command::new(env!("CARGO_BIN_EXE_penumbra")).current_dir(folder.path("")).args(args).output();
+        program.unwrap()
+    };
+    let output = run(&["render", stage, "--spp", "1"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let picture = exr::read(&folder.path("own_name.exr")).unwrap();
+    assert_eq!((picture.width, picture.height), (8, 4));
+    let scene = folder.write("tri.glb", triangle().bytes());
+    assert_eq!(run(&["render", text(&scene)]).status.code(), Some(2));
+}

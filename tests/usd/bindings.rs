@@ -42,3 +42,10 @@ fn the_purpose_full_comes_before_all_purpose_bindings_however_near() {
     }
     assert_eq!(loaded.material("/World/NearFull"), "Near");
 }
+
+#[test]
+fn a_collection_takes_the_strength_of_what_is_bound_beside_it() {
+    let loaded = load("strong.usda", &ImportOptions::default());
+    // OpenUSD's.
+    assert_eq!((loaded.material("/Set/A"), loaded.material("/Set/B")), ("Metal", "Plain"));
+}

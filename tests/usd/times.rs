@@ -45,3 +45,13 @@ fn what_moves_while_a_shutter_is_open_is_kept() {
     assert!(loaded.one("/Blocked/T").motion.is_empty() || loaded.one("/Blocked/T").motion.len() == 2);
     loaded.said_of("motion blur is not rendered yet");
 }
+
+#[test]
+fn what_deforms_while_a_shutter_is_open_is_kept() {
+    let loaded = load("deforms.usda", &at_frame(4.0));
+    let mesh = &loaded.scene.meshes[loaded.one("/Sheet").mesh as usize];
+    assert_eq!(mesh.points[1], [1.0, 0.0, 4.0]);
+    let motion: Vec<(f64, [f32; 3])> = mesh.motion.iter().map(|m| (m.time, m.value[1])).collect();
+    assert_eq!(motion, [(-0.5, [1.0, 0.0, 3.5]), (0.5, [1.0, 0.0, 4.5])]);
+    loaded.said_of("motion blur is not rendered yet");
+}
