@@ -3,7 +3,9 @@
 
 mod bad;
 mod composition;
+mod corpus;
 mod instances;
+mod mutation;
 mod shown;
 mod times;
 mod walk_time;
@@ -29,7 +31,7 @@ struct Loaded {
 fn try_load(path: &Path, options: &ImportOptions) -> Result<Loaded> {
     let mut warnings = Warnings::new();
     let scene = import::scene(path, options, &mut warnings)?;
-    penumbra::desc::check(&scene)?;
+    penumbra::desc::check(&scene).expect("the door keeps the rules of SceneDesc");
     Ok(Loaded { scene, said: warnings.iter().map(ToString::to_string).collect() })
 }
 

@@ -10,6 +10,7 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
 use super::bindings::{self, Bindings, Scope};
+use super::cycles;
 use super::inherit::{Clock, Context, Pose};
 use super::stage::Reading;
 use crate::desc::Motion;
@@ -179,13 +180,18 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// Everything below `prim`, whose children take `context` from it.
     pub fn below(&mut self, prim: &Prim, context: Context, overs: bool, shown: &mut Vec<Shown>) {
         let mut stack = Vec::new();
+        let reading = self.reading;
         let push = |stack: &mut Vec<(Prim, Rc<Context>)>, prim: &Prim, context: Context| {
+            cycles::mend(reading);
             let children = prim.children().unwrap_or_default();
             let context = Rc::new(context);
             stack.extend(children.into_iter().rev().map(|child| (child, context.clone())));
         };
         push(&mut stack, prim, context);
         while let Some((prim, context)) = stack.pop() {
+            if self.full() {
+                break;
+            }
             if let Some(context) = self.enter(&prim, &context, overs, shown) {
                 push(&mut stack, &prim, context);
             }
@@ -268,9 +274,15 @@ impl<'r, 'a> Walk<'r, 'a> {
         shown.push(one);
     }
 
-    /// The last `count` that were added are only what others are like.
-    pub fn forget(&mut self, count: usize) {
-        self.count = self.count.saturating_sub(count);
+    /// True where `more` can be added, by the instances of `prim`; else they are left out, which is told. What
+    /// prototypes show counts as well: it takes as much memory.
+    pub fn affords(&self, more: usize, prim: &Prim) -> bool {
+        let affords = self.count.saturating_add(more) <= MOST_PRIMS;
+        if !affords {
+            let what = format!("shows {more} prims, with which there are more than {MOST_PRIMS}; it is left out");
+            self.reading.warn(prim.path(), what);
+        }
+        affords
     }
 
     /// True where no more can be added.
@@ -291,7 +303,6 @@ impl<'r, 'a> Walk<'r, 'a> {
                 let pose = Pose::still(DAffine3::IDENTITY);
                 let within = Context { pose, bindings: None, asset: None, ..context.clone() };
                 self.below(&first, within, false, &mut inside);
-                self.forget(inside.len());
                 let inside = Rc::new(inside);
                 let prototype = Prototype { first: first.clone(), shown: Vec::new() };
                 let known = self.prototypes.entry(root).or_insert(prototype);
@@ -299,13 +310,13 @@ impl<'r, 'a> Walk<'r, 'a> {
                 inside
             }
         };
+        if !self.affords(prototype.len(), prim) {
+            return;
+        }
         let (walked, instance) = (first.path().clone(), prim.path().clone());
         let scope = Rc::new(Scope { outer: None, bindings: context.bindings, walked: walked.clone(), instance });
         let mut scopes: Vec<(Rc<Scope>, Rc<Scope>)> = Vec::new();
         for inner in prototype.iter() {
-            if self.full() {
-                break;
-            }
             let scope = match &inner.scope {
                 None => scope.clone(),
                 Some(inside) => match scopes.iter().find(|(known, _)| Rc::ptr_eq(known, inside)) {
