@@ -4,8 +4,10 @@
 mod bad;
 mod bindings;
 mod composition;
+mod corpus;
 mod instances;
 mod large;
+mod mutation;
 mod shown;
 mod times;
 
@@ -30,7 +32,7 @@ struct Loaded {
 fn try_load(path: &Path, options: &ImportOptions) -> Result<Loaded> {
     let mut warnings = Warnings::new();
     let scene = import::scene(path, options, &mut warnings)?;
-    penumbra::desc::check(&scene)?;
+    penumbra::desc::check(&scene).expect("the door keeps the rules of SceneDesc");
     Ok(Loaded { scene, said: warnings.iter().map(ToString::to_string).collect() })
 }
 

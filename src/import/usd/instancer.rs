@@ -24,6 +24,10 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         return;
     }
     let prototypes = prototypes(walk, prim, context);
+    let of = |index: &i32| usize::try_from(*index).ok().and_then(|index| prototypes.get(index)).map_or(0, |p| p.len());
+    if !walk.affords(indices.iter().map(of).fold(0, usize::saturating_add), prim) {
+        return;
+    }
     let Some(places) = transforms(reading, prim, count, reading.time) else {
         let what = format!("has {count} protoIndices but another number of positions; its instances are left out");
         return reading.warn(prim.path(), what);
@@ -36,7 +40,7 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
     let mask = mask(reading, prim, count);
     let mut lost = 0;
     for (i, index) in indices.into_iter().enumerate() {
-        if !mask.as_ref().is_none_or(|mask| mask[i]) || walk.full() {
+        if !mask.as_ref().is_none_or(|mask| mask[i]) {
             continue;
         }
         let Some(prototype) = usize::try_from(index).ok().and_then(|index| prototypes.get(index)) else {
@@ -101,7 +105,6 @@ fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path:
     if let Some(inner) = walk.enter(&root, &within, true, &mut shown) {
         walk.below(&root, inner, true, &mut shown);
     }
-    walk.forget(shown.len());
     if !inside {
         // The instancer is what the user sees.
         let name = path.name().unwrap_or_default();

@@ -12,6 +12,7 @@ mod authored;
 mod bindings;
 mod camera;
 mod crew;
+mod cycles;
 mod diagnostics;
 mod gather;
 mod images;
@@ -38,7 +39,10 @@ use std::path::Path;
 
 use super::ImportOptions;
 use crate::desc::SceneDesc;
-use crate::error::{Result, Warnings};
+use crate::error::{Error, Result, Warnings};
+
+/// Bytes of stack; memory is taken only where it is used.
+const STACK: usize = 1 << 28;
 
 /// Reads the stage whose root layer is `path`.
 ///
@@ -46,8 +50,16 @@ use crate::error::{Result, Warnings};
 /// A root layer that can't be read. Everything else that is broken is told of, and the rest of the
 /// stage is read.
 pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Result<SceneDesc> {
-    let reading = stage::Reading::open(path, options)?;
-    let scene = scene::build(&reading);
-    warnings.extend(reading.warnings.take());
-    scene
+    // The openusd crate follows what is nested by calling itself: the stack of a thread of its own holds more.
+    std::thread::scope(|scope| {
+        let read = || {
+            let reading = stage::Reading::open(path, options)?;
+            let scene = scene::build(&reading);
+            warnings.extend(reading.warnings.take());
+            scene
+        };
+        let reader = std::thread::Builder::new().name("usd".into()).stack_size(STACK).spawn_scoped(scope, read);
+        let reader = reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
+        reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }

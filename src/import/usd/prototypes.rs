@@ -44,7 +44,6 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
             let pose = Pose::still(DAffine3::IDENTITY);
             let within = Context { pose, bindings: None, asset: None, ..context.clone() };
             walk.below(&first, within, false, &mut inside);
-            walk.forget(inside.len());
             let inside = Rc::new(inside);
             let prototype = Prototype { first: first.clone(), shown: Vec::new() };
             let known = walk.prototypes.native.entry(root).or_insert(prototype);
@@ -52,13 +51,13 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
             inside
         }
     };
+    if !walk.affords(prototype.len(), prim) {
+        return;
+    }
     let (walked, instance) = (first.path().clone(), prim.path().clone());
     let scope = Rc::new(Scope { outer: None, bindings: context.bindings, walked: walked.clone(), instance });
     let mut scopes: Vec<(Rc<Scope>, Rc<Scope>)> = Vec::new();
     for inner in prototype.iter() {
-        if walk.full() {
-            break;
-        }
         let scope = match &inner.scope {
             None => scope.clone(),
             Some(inside) => match scopes.iter().find(|(known, _)| Rc::ptr_eq(known, inside)) {

@@ -10,7 +10,7 @@ use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 use super::super::ImportOptions;
 use super::authored::Authored;
 use super::units::Units;
-use super::{diagnostics, variants};
+use super::{cycles, diagnostics, variants};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::DAffine3;
 
@@ -32,6 +32,8 @@ pub(super) struct Reading<'a> {
     /// True for files that Blender wrote, by the root layer's own metadata; some of their values mean
     /// something else than UsdLux says.
     pub blender: bool,
+    /// How many of its layers were searched for cycles.
+    pub layers: Cell<usize>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
     /// Whether there is a material of a MaterialX document at a path without prim.
@@ -51,7 +53,6 @@ impl<'a> Reading<'a> {
         }
         let opened = Stage::builder().schema_registry(openusd_schemas::schema_registry()).open(&path.to_string_lossy());
         let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
-        variants::select(&stage, &options.variants, &place)?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);
         let units = Units::of_root(&stage, &place, &mut warnings);
@@ -59,7 +60,7 @@ impl<'a> Reading<'a> {
         // What the metadata that files call `doc` is named in memory.
         let doc = stage.field::<sdf::Value>(&root, "documentation").ok().flatten();
         let blender = matches!(doc, Some(sdf::Value::String(text)) if text.starts_with("Blender v"));
-        Ok(Self {
+        let reading = Self {
             stage,
             time,
             shutter: Cell::new(None),
@@ -68,10 +69,14 @@ impl<'a> Reading<'a> {
             meters: units.meters,
             to_world: units.to_world(),
             blender,
+            layers: Cell::new(0),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
             authored: RefCell::default(),
-        })
+        };
+        cycles::mend(&reading);
+        variants::select(&reading.stage, &options.variants, &reading.place)?;
+        Ok(reading)
     }
 
     /// The place of the prim or property at `path`.

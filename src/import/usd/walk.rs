@@ -10,6 +10,7 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
 use super::bindings::{Bindings, Scope};
+use super::cycles;
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
 use super::prototypes::Prototypes;
@@ -130,13 +131,18 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// prototypes of point instancers.
     pub fn below(&mut self, prim: &Prim, context: Context, overs: bool, shown: &mut Vec<Shown>) {
         let mut stack = Vec::new();
+        let reading = self.reading;
         let push = |stack: &mut Vec<(Prim, Rc<Context>)>, prim: &Prim, context: Context| {
+            cycles::mend(reading);
             let children = prim.children().unwrap_or_default();
             let context = Rc::new(context);
             stack.extend(children.into_iter().rev().map(|child| (child, context.clone())));
         };
         push(&mut stack, prim, context);
         while let Some((prim, context)) = stack.pop() {
+            if self.full() {
+                break;
+            }
             if let Some(context) = self.enter(&prim, &context, overs, shown) {
                 push(&mut stack, &prim, context);
             }
@@ -224,9 +230,15 @@ impl<'r, 'a> Walk<'r, 'a> {
         shown.push(one);
     }
 
-    /// The last `count` that were added are only what others are like.
-    pub fn forget(&mut self, count: usize) {
-        self.count = self.count.saturating_sub(count);
+    /// True where `more` can be added, by the instances of `prim`; else they are left out, which is told. What
+    /// prototypes show counts as well: it takes as much memory.
+    pub fn affords(&self, more: usize, prim: &Prim) -> bool {
+        let affords = self.count.saturating_add(more) <= MOST_PRIMS;
+        if !affords {
+            let what = format!("shows {more} prims, with which there are more than {MOST_PRIMS}; it is left out");
+            self.reading.warn(prim.path(), what);
+        }
+        affords
     }
 
     /// True where no more can be added.

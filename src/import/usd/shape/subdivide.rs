@@ -150,7 +150,7 @@ impl Rules {
         let edges: usize =
             lengths.iter().map(|&length| usize::try_from(length).map_or(0, |n| n.saturating_sub(1))).sum();
         let for_each_edge = self.crease_sharpnesses.len() == edges && edges != lengths.len();
-        let mut creases = Vec::with_capacity(edges);
+        let mut creases = Vec::new();
         let (mut start, mut wrong, mut edge) = (0, 0, 0);
         for (crease, &length) in lengths.iter().enumerate() {
             let end = start + usize::try_from(length).unwrap_or(0);
