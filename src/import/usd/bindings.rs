@@ -91,14 +91,15 @@ impl Bindings {
         if let Some(above) = &self.above {
             above.fold(purpose, path, winner);
         }
-        if let Some(bound) = &self.direct[purpose] {
-            winner.add(bound);
-        }
-        // A collection of the same prim takes the place of what is bound directly, its strength included.
+        // A collection takes the place of what the same prim is bound to directly, its strength included.
         let member = self.collections[purpose].iter().find(|(members, _)| members.is_path_included(path));
-        if let Some((_, bound)) = member {
-            let stronger = bound.stronger || self.direct[purpose].as_ref().is_some_and(|direct| direct.stronger);
-            winner.add(&Bound { material: bound.material.clone(), stronger });
+        match (member, &self.direct[purpose]) {
+            (Some((_, bound)), direct) => {
+                let stronger = bound.stronger || direct.as_ref().is_some_and(|direct| direct.stronger);
+                winner.add(&Bound { material: bound.material.clone(), stronger });
+            }
+            (None, Some(direct)) => winner.add(direct),
+            (None, None) => {}
         }
     }
 }
