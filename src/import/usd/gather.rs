@@ -27,6 +27,14 @@ pub(super) struct Look {
     pub shape: Option<ShapeLook>,
 }
 
+impl Look {
+    /// The materials bound to it and its subsets.
+    pub fn materials(&self) -> impl Iterator<Item = &Path> {
+        let subsets = self.shape.iter().flat_map(|shape| &shape.subsets);
+        self.material.iter().chain(subsets.flatten())
+    }
+}
+
 /// A shape with its materials.
 pub(super) struct ShapeLook {
     /// Index of the batch and of the shape in it.
@@ -100,12 +108,14 @@ impl<'r, 'a> Gatherer<'r, 'a> {
             // Where no binding of the surroundings has a say, all instances look the same.
             let scope = one.scope.as_ref().filter(|scope| scope.matters());
             let key = (Rc::as_ptr(&one.leaf), scope.map_or(std::ptr::null(), Rc::as_ptr));
-            if !self.known.contains_key(&key) {
+            let known = self.known.get(&key).map(|known| known.look.clone());
+            let look = known.unwrap_or_else(|| {
                 let look = self.look(&one, number, batch).map(Arc::new);
-                let known = Known { _leaf: one.leaf.clone(), _scope: scope.cloned(), look };
+                let known = Known { _leaf: one.leaf.clone(), _scope: scope.cloned(), look: look.clone() };
                 self.known.insert(key, known);
-            }
-            if let Some(look) = self.known.get(&key).and_then(|known| known.look.clone()) {
+                look
+            });
+            if let Some(look) = look {
                 found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset });
             }
         }

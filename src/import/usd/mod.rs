@@ -4,9 +4,13 @@
 //! read here. USD's schemas: <https://openusd.org/release/api/>.
 //!
 //! ```text
-//! stage ─► walk: what is shown, where ─► materials ─► shapes, in parallel ─► instances
-//!                                    └─► lights, cameras, render settings
+//! stage ─► crew ─► walk: what is shown, where ─► gather: shapes as authored, materials' paths
+//!                                                   ├─► lights, cameras
+//!                                                   └─► materials ─► shapes, in parallel ─► instances
 //! ```
+//!
+//! A stage is bound to its thread. What needs it stands left of and in `gather`; large stages are opened by
+//! many threads, each of which walks a share of the prims.
 
 mod authored;
 mod bindings;

@@ -28,12 +28,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     let mut images = Images::default();
     let geometry = lights_and_cameras(reading, &haul, &mut images, &mut scene);
     let mut materials = Materials::new(reading, images);
-    let subsets = |found: &'_ Found| {
-        found.look.shape.iter().flat_map(|shape| shape.subsets.clone()).flatten().collect::<Vec<_>>()
-    };
-    let bound: BTreeSet<Path> =
-        haul.found.iter().flat_map(|f| f.look.material.clone().into_iter().chain(subsets(f))).collect();
-    materials.preload(&bound);
+    materials.preload(haul.found.iter().flat_map(|found| found.look.materials()).collect::<BTreeSet<_>>());
     let Haul { found, shapes, times } = haul;
     let shapes = shapes::build(reading, &found, shapes, &mut materials);
     materials.finish(&mut scene);
