@@ -112,11 +112,14 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
     })
 }
 
+/// So many meshes are listed for people.
+const MOST_MESHES: usize = 100;
+
 /// The report for people.
 fn page(info: &Value) -> String {
     let mut page = String::new();
     let mut line = |text: String| page += &(text + "\n");
-    let list = |key: &str| info[key].as_array().cloned().unwrap_or_default();
+    let list = |key: &str| info[key].as_array().map_or(&[][..], Vec::as_slice);
     line(info["scene"].as_str().unwrap_or_default().to_string());
     line(format!(
         "  {} triangles in {} meshes, {} when instanced by {} instances",
@@ -125,11 +128,15 @@ fn page(info: &Value) -> String {
         info["instanced_triangles"],
         info["instances"]
     ));
-    for mesh in list("meshes") {
+    let meshes = list("meshes");
+    for mesh in meshes.iter().take(MOST_MESHES) {
         line(format!(
             "  mesh {}: {} points, {} triangles, {} instances",
             mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]
         ));
+    }
+    if meshes.len() > MOST_MESHES {
+        line(format!("  and {} meshes more; --json lists all", meshes.len() - MOST_MESHES));
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
     line(format!("  {} materials: {}", names.len(), names.join(", ")));
@@ -149,7 +156,7 @@ fn page(info: &Value) -> String {
         line(format!("  camera {}{node}: {lens}", camera["name"]));
     }
     for light in list("lights") {
-        line(format!("  {}", lights::line(&light)));
+        line(format!("  {}", lights::line(light)));
     }
     if !list("light_groups").is_empty() {
         line(format!("  light groups: {}", joined(&info["light_groups"])));
