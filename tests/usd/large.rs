@@ -1,9 +1,7 @@
-//! Large stages: read by many threads, and how long that takes and how much memory. The measurements are
-//! ignored, since they say nothing on a busy machine or of a build with debug checks.
+//! Large stages, which many threads read. How long that takes and how much memory: `benches/usd.py`.
 
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use penumbra::import::ImportOptions;
 
@@ -61,57 +59,4 @@ fn many_threads_read_what_one_does() {
     let paths: Vec<String> = (0..700).flat_map(|i| (0..19).map(move |m| format!("/World/A{i}/M{m}"))).collect();
     assert_eq!(one.paths(), paths);
     assert_eq!(one.origin("/World/A699/M18"), [0.18, 6.99, 0.0]);
-}
-
-/// Seconds to read 5 000 references, and the processor time of all threads.
-fn measured(instanceable: bool) -> (Loaded, f64) {
-    let (_dir, path) = references(5000, |_| instanceable);
-    let start = Instant::now();
-    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
-    let seconds = start.elapsed().as_secs_f64();
-    println!("100 000 prims, instances {instanceable}: {seconds:.2} s");
-    assert_eq!(loaded.scene.instances.len(), 5000 * 19);
-    (loaded, seconds)
-}
-
-#[test]
-#[ignore = "a measurement"]
-fn one_hundred_thousand_prims_take_less_than_three_seconds() {
-    let (_, seconds) = measured(false);
-    assert!(seconds < 3.0, "{seconds} s");
-}
-
-#[test]
-#[ignore = "a measurement"]
-fn one_hundred_thousand_instanced_prims_take_less_than_a_second() {
-    let (loaded, seconds) = measured(true);
-    assert_eq!(loaded.scene.meshes.len(), 19);
-    assert!(seconds < 1.0, "{seconds} s");
-}
-
-/// A million instances of a cube: twelve million triangles.
-#[test]
-#[ignore = "a measurement"]
-fn ten_million_instanced_triangles_take_less_than_a_gibibyte() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("root.usda");
-    let count = 1_000_000;
-    let mut text = String::from("#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\ndef PointInstancer \"Many\" {\n");
-    text.push_str("rel prototypes = </Many/Cube>\nint[] protoIndices = [0");
-    text.push_str(&", 0".repeat(count - 1));
-    text.push_str("]\npoint3f[] positions = [(0, 0, 0)");
-    for i in 1..count {
-        write!(text, ", ({i}, 0, 0)").unwrap();
-    }
-    text.push_str("]\ndef Cube \"Cube\" {}\n}\n");
-    std::fs::write(&path, text).unwrap();
-    let start = Instant::now();
-    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let peak =
-        status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next()?.parse::<f64>().ok());
-    let mebibytes = peak.unwrap_or(0.0) / 1024.0;
-    println!("{count} instances: {:.2} s, {mebibytes:.0} MiB at most", start.elapsed().as_secs_f64());
-    assert_eq!((loaded.scene.instances.len(), loaded.scene.meshes.len()), (count, 1));
-    assert!(mebibytes < 1024.0, "{mebibytes} MiB");
 }
