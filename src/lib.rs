@@ -14,7 +14,8 @@
 //! - [`scene`]: all of them together, made by [`scene::prepare`];
 //! - [`settings`]: the table of everything that can be set; [`film`]: the table of passes and the sums
 //!   behind them;
-//! - [`integrator`]: one sample of one pixel; [`render`]: all of them; [`output`]: files.
+//! - [`integrator`]: one sample of one pixel; [`render`]: all of them; [`output`]: files; [`job`]: what
+//!   the front doors share of these.
 //!
 //! ```no_run
 //! use penumbra::{error::Warnings, import, output, render, scene, settings::Settings};
@@ -36,9 +37,12 @@ pub mod error;
 pub mod film;
 pub mod import;
 pub mod integrator;
+pub mod job;
 pub mod light;
 pub mod math;
 pub mod output;
+#[cfg(feature = "python")]
+mod python;
 pub mod render;
 pub mod sampling;
 pub mod scene;

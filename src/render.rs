@@ -39,6 +39,9 @@ pub trait Observer: Sync {
     /// Called now and then.
     fn progress(&self, _progress: &Progress) {}
 
+    /// Called after each wave, when every pixel has the same number of samples.
+    fn wave(&self, _film: &Film) {}
+
     /// True stops the render soon; what was computed is kept.
     fn cancelled(&self) -> bool {
         false
@@ -92,6 +95,7 @@ pub fn render(scene: &Scene, settings: &Settings, observer: &dyn Observer) -> Re
             let next = taken.saturating_add(wave).min(job.target);
             film.tiles_mut().par_iter_mut().with_max_len(1).for_each(|tile| job.render_tile(tile, taken..next));
             taken = next;
+            observer.wave(&film);
             wave = (wave * 2).min(LONGEST_WAVE);
         }
     });

@@ -1,16 +1,15 @@
 //! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
 
 use std::path::PathBuf;
-use std::time::SystemTime;
 
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use penumbra::desc::{CameraDesc, SceneDesc};
 use penumbra::error::Warnings;
 use penumbra::film::SampleId;
-use penumbra::output::{Metadata, exr, png};
-use penumbra::scene::{View, prepare};
+use penumbra::job;
+use penumbra::output::{exr, png};
+use penumbra::scene::prepare;
 use penumbra::settings::{SETTINGS, Settings};
 
 use super::files::{Files, save};
@@ -141,8 +140,11 @@ fn render_frame(
         typed => typed.filter(|_| sample.is_none()),
     };
     environment::apply(args, &mut desc)?;
-    let view = view(args, &desc, &mut warnings);
-    let settings = &with_own_passes(args, settings, &desc, &mut warnings);
+    let view = job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
+    let settings = &match args.value_source("passes") {
+        Some(ValueSource::CommandLine) => settings.clone(),
+        _ => job::with_own_passes(settings, &desc, &mut warnings),
+    };
     let prepared = prepare(desc, &view, settings)?;
     warnings.extend(prepared.warnings.clone());
     tell(&warnings, told);
@@ -170,27 +172,9 @@ fn render_frame(
         warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
         say::err(format!("warning: {what}"));
     }
-    let spp = film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()));
-    let metadata = Metadata {
-        scene: scene::path(args).display().to_string(),
-        camera: prepared.camera.to_string(),
-        frame,
-        samples: spp,
-        seed: settings.seed,
-        seconds: rendered.elapsed.as_secs_f64(),
-        date: Some(SystemTime::now()),
-        non_finite: bad.count,
-        non_finite_first: bad.first,
-        warnings: warnings.iter().map(ToString::to_string).collect(),
-        settings: SETTINGS
-            .iter()
-            .filter(|def| def.name != "spp" || settings.spp != Settings::NO_LIMIT)
-            .map(|def| (def.name.to_owned(), def.get(settings)))
-            .collect(),
-        comments: rendered.interrupted.then(|| format!("interrupted at {spp:.1} samples per pixel")),
-        manifests: scene.ids.manifests(),
-        ..Metadata::default()
-    };
+    let spp = job::samples_per_pixel(film);
+    let name = scene::path(args).display().to_string();
+    let metadata = job::metadata(name, frame, &prepared, &rendered, settings, &warnings);
     let picture = film.develop();
     let saved = save(&out, &picture, &metadata, &exr::Options { half: settings.half, ..exr::Options::default() })?;
     if let Some(preview) = &preview {
@@ -208,35 +192,6 @@ fn render_frame(
     let [width, height] = scene.size;
     say::err(format!("{}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", out.display(), prepared.camera));
     Ok(Outcome::Done)
-}
-
-/// Camera and size: what was typed, or what the file asks for.
-fn view(args: &ArgMatches, desc: &SceneDesc, warnings: &mut Warnings) -> View {
-    let own = &desc.render;
-    let camera = args.get_one::<String>("camera").cloned().or_else(|| {
-        let name = own.camera.as_deref()?;
-        let is_it = |c: &CameraDesc| *c.name == *name || c.place.node.as_deref() == Some(name);
-        if !desc.cameras.iter().any(is_it) {
-            warnings.push(&desc.place, format!("asks for the camera {name}, which does not exist; another is taken"));
-            return None;
-        }
-        Some(name.to_owned())
-    });
-    View { camera, size: args.get_one("size").copied().or(own.resolution) }
-}
-
-/// `settings` with the passes that the file asks for, where none were typed.
-fn with_own_passes(args: &ArgMatches, settings: &Settings, desc: &SceneDesc, warnings: &mut Warnings) -> Settings {
-    let mut settings = settings.clone();
-    let own = desc.render.passes.join(",");
-    if own.is_empty() || args.value_source("passes") == Some(ValueSource::CommandLine) {
-        return settings;
-    }
-    let passes = SETTINGS.iter().find(|def| def.name == "passes");
-    if let Some(Err(what)) = passes.map(|def| def.set(&mut settings, &own)) {
-        warnings.push(&desc.place, format!("asks for passes that can't be rendered: {what}; left out"));
-    }
-    settings
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.

@@ -1,5 +1,6 @@
 //! Files in: each door fills a `SceneDesc` and `Warnings`, nothing else.
 
+pub mod blender;
 mod exr_image;
 pub mod gltf;
 pub mod ies;

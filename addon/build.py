@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Builds the extension: one zip for Blender 4.2 and later, the engine's wheel inside.
+
+    python addon/build.py [--out DIR] [--wheel FILE]
+
+Needs maturin (pip install maturin) and Rust, unless a wheel is given. Prints the zip's path.
+"""
+
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Platform of a wheel, as Blender calls it.
+PLATFORMS = {
+    r"manylinux.*x86_64|linux_x86_64": "linux-x64",
+    r"manylinux.*aarch64|linux_aarch64": "linux-arm64",
+    r"win_amd64": "windows-x64",
+    r"win_arm64": "windows-arm64",
+    r"macosx.*x86_64": "macos-x64",
+    r"macosx.*arm64": "macos-arm64",
+}
+
+
+def build_wheel(folder):
+    """The wheel, built from this checkout."""
+    command = [sys.executable, "-m", "maturin", "build", "--release", "--out", folder]
+    subprocess.run(command, cwd=ROOT, check=True, stdout=sys.stderr)
+    return next(pathlib.Path(folder).glob("penumbra-*.whl"))
+
+
+def platform_of(wheel):
+    """Blender's name for the platform that a wheel is for."""
+    for pattern, name in PLATFORMS.items():
+        if re.search(pattern, wheel.name):
+            return name
+    raise SystemExit(f"{wheel.name} is for a platform that Blender does not run on")
+
+
+def build_zip(wheel, out):
+    """The extension with `wheel` inside."""
+    source = ROOT / "addon" / "penumbra"
+    manifest = (source / "blender_manifest.toml").read_text()
+    platform = platform_of(wheel)
+    manifest = manifest.replace("platforms = []", f'platforms = ["{platform}"]')
+    manifest = manifest.replace("wheels = []", f'wheels = ["./wheels/{wheel.name}"]')
+    version = re.search(r'^version = "(.*)"', manifest, re.M).group(1)
+    target = out / f"penumbra-{version}-{platform}.zip"
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("blender_manifest.toml", manifest)
+        for path in sorted(source.rglob("*.py")):
+            archive.write(path, path.relative_to(source))
+        for name in ("LICENSE-MIT", "LICENSE-APACHE"):
+            archive.write(ROOT / name, name)
+        archive.write(wheel, f"wheels/{wheel.name}", zipfile.ZIP_STORED)
+    return target
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Builds Penumbra's extension for Blender")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / "addon")
+    parser.add_argument("--wheel", type=pathlib.Path, help="a wheel that is there already")
+    args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        wheel = args.wheel or build_wheel(folder)
+        kept = args.out / wheel.name
+        if wheel.resolve() != kept.resolve():
+            shutil.copy(wheel, kept)
+        print(build_zip(kept, args.out))
+
+
+if __name__ == "__main__":
+    main()

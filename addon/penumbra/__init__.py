@@ -1,0 +1,19 @@
+"""Penumbra inside Blender: a thin door to the engine.
+
+What happens here is copying: properties by their names into one JSON document, meshes and images as
+arrays (export/), pictures back into Blender's passes (engine.py). What they mean is decided in Rust.
+"""
+
+from . import engine, panels, properties
+
+MODULES = (properties, engine, panels)
+
+
+def register():
+    for module in MODULES:
+        module.register()
+
+
+def unregister():
+    for module in reversed(MODULES):
+        module.unregister()

@@ -1,0 +1,107 @@
+"""Blender's render engine: F12, animations, background renders."""
+
+import traceback
+
+import bpy
+import penumbra
+
+from . import passes, properties
+from .export import Exporter
+
+
+class PenumbraRenderEngine(bpy.types.RenderEngine):
+    """Renders with Penumbra."""
+
+    bl_idname = "PENUMBRA"
+    bl_label = "Penumbra"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True
+    bl_use_postprocess = True
+    bl_use_shading_nodes_custom = False
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        """Tells Blender which passes there will be."""
+        for name, channels, kind in passes.layers(renderlayer):
+            self.register_pass(scene, renderlayer, name, len(channels), channels, kind)
+
+    def render(self, depsgraph):
+        """Renders one view layer. Nothing may be raised from here: it would take Blender down."""
+        try:
+            self._render(depsgraph)
+        except Exception as error:  # noqa: BLE001
+            message = str(error) or type(error).__name__
+            if not isinstance(error, (ValueError, OSError, NotImplementedError)):
+                message = f"Penumbra failed, which is a bug in it: {message}"
+                traceback.print_exc()
+            self.report({"ERROR"}, message)
+            self.error_set(message)
+
+    def _render(self, depsgraph):
+        scene, view_layer = depsgraph.scene, depsgraph.view_layer
+        scale = scene.render.resolution_percentage / 100.0
+        size = [max(int(n * scale), 1) for n in (scene.render.resolution_x, scene.render.resolution_y)]
+        if scene.camera is None and self.camera_override is None:
+            raise ValueError("the scene has no camera: add one, or make one the scene's camera")
+        self.update_stats("", "Penumbra: reading the scene")
+        exporter = Exporter(penumbra.Scene())
+        exporter.export(depsgraph, size, self.camera_override)
+        self._tell(exporter.warnings)
+        if self.test_break():
+            return
+
+        def show(picture):
+            self._fill(view_layer, picture, size)
+
+        picture = penumbra.render(
+            exporter.scene,
+            observer=self._observe,
+            on_picture=None if bpy.app.background else show,
+            frame=scene.frame_current_final,
+            **properties.settings(scene, view_layer),
+        )
+        self._tell(picture.warnings)
+        self._fill(view_layer, picture, size)
+
+    def _observe(self, progress):
+        """Called by the engine, on Blender's thread; a true answer stops the render."""
+        if progress is not None:
+            self.update_progress(progress["done"])
+            target = progress["target_spp"]
+            count = f"{progress['spp']:.0f}/{target}" if target else f"{progress['spp']:.0f}"
+            text = f"Sample {count}"
+            if progress["remaining"] is not None and progress["done"] < 1.0:
+                text += f" | {_clock(progress['remaining'])} left"
+            self.update_stats("", text)
+        return self.test_break()
+
+    def _fill(self, view_layer, picture, size):
+        """Puts a picture into Blender's render result."""
+        result = self.begin_result(0, 0, *size, layer=view_layer.name)
+        try:
+            for render_pass in result.layers[0].passes:
+                if render_pass.name in picture:
+                    values = picture.flat(render_pass.name)
+                    if len(values) == len(render_pass.rect) * render_pass.channels:
+                        render_pass.rect.foreach_set(values)
+            self.update_result(result)
+        finally:
+            self.end_result(result)
+
+    def _tell(self, warnings):
+        """Each warning in Blender's own reports, once."""
+        for warning in warnings:
+            self.report({"WARNING"}, warning)
+
+
+def _clock(seconds):
+    minutes, seconds = divmod(int(seconds + 0.5), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
+
+
+def register():
+    bpy.utils.register_class(PenumbraRenderEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(PenumbraRenderEngine)

@@ -1,0 +1,5 @@
+"""From Blender's evaluated scene to what the engine's Scene takes."""
+
+from .scene import Exporter
+
+__all__ = ["Exporter"]

@@ -1,0 +1,57 @@
+"""The camera and what of the scene's settings frames the picture."""
+
+
+def camera(obj, scene, matrix=None):
+    """The camera object `obj`, or None for none; `matrix` replaces its own (motion, stereo)."""
+    if obj is None or obj.type != "CAMERA":
+        return None
+    data = obj.data
+    result = {
+        "name": obj.name,
+        "matrix": [list(map(float, row)) for row in (matrix or obj.matrix_world)],
+        "type": data.type,
+    }
+    for name in ("lens", "sensor_width", "sensor_height", "sensor_fit", "shift_x", "shift_y", "clip_start",
+                 "clip_end", "ortho_scale"):
+        result[name] = getattr(data, name)
+    dof = data.dof
+    if dof.use_dof:
+        result["dof"] = {
+            "distance": _focus(obj, dof),
+            "fstop": dof.aperture_fstop,
+            "blades": dof.aperture_blades,
+            "ratio": dof.aperture_ratio,
+            "rotation": dof.aperture_rotation,
+        }
+    if data.type == "PANO":
+        # The panorama's own settings moved from the Cycles add-on to the camera in 5.0.
+        source = data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
+        names = ("panorama_type", "latitude_min", "latitude_max", "longitude_min", "longitude_max", "fisheye_fov",
+                 "fisheye_lens")
+        result["panorama"] = {name: getattr(source, name) for name in names if hasattr(source, name)}
+    return result
+
+
+def _focus(obj, dof):
+    """Distance along the axis to the object in focus, or as set."""
+    target = dof.focus_object
+    if target is None:
+        return dof.focus_distance
+    place = target.matrix_world.translation
+    if target.type == "ARMATURE" and dof.focus_subtarget:
+        bone = target.pose.bones.get(dof.focus_subtarget)
+        if bone is not None:
+            place = (target.matrix_world @ bone.matrix).translation
+    view = obj.matrix_world.normalized().inverted() @ place
+    return abs(view.z)
+
+
+def render(scene, size):
+    """Settings that are the scene's own."""
+    cycles = getattr(scene, "cycles", None)
+    return {
+        "size": list(size),
+        "pixel_aspect": [scene.render.pixel_aspect_x, scene.render.pixel_aspect_y],
+        "exposure": getattr(cycles, "film_exposure", 1.0),
+        "film_transparent": scene.render.film_transparent,
+    }

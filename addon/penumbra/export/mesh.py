@@ -1,0 +1,54 @@
+"""Meshes as arrays. Nothing here loops over vertices."""
+
+import numpy as np
+
+
+def _array(collection, attribute, width, dtype):
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(attribute, values)
+    return values
+
+
+def hand_over(scene, key, mesh):
+    """Gives the evaluated mesh to the engine's scene as mesh `key`."""
+    mesh.calc_loop_triangles()
+    triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
+    arrays = {
+        "positions": _array(mesh.attributes["position"].data, "vector", 3, np.float32)
+        if "position" in mesh.attributes
+        else np.empty(0, np.float32),
+        "corner_verts": _corner_verts(mesh),
+        "triangles": triangles,
+    }
+    domain = mesh.normals_domain
+    if domain == "CORNER":
+        arrays["normals"] = _array(mesh.corner_normals, "vector", 3, np.float32)
+    elif domain == "POINT":
+        arrays["normals"] = _array(mesh.vertex_normals, "vector", 3, np.float32)
+    slots = mesh.attributes.get("material_index")
+    if slots is not None:
+        arrays["material_index"] = _array(slots.data, "value", 1, np.int32)
+        arrays["triangle_polygons"] = _array(mesh.loop_triangle_polygons, "value", 1, np.int32)
+    scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh), **arrays)
+
+
+def _corner_verts(mesh):
+    attribute = mesh.attributes.get(".corner_vert")
+    if attribute is not None:
+        return _array(attribute.data, "value", 1, np.int32)
+    return _array(mesh.loops, "vertex_index", 1, np.int32)
+
+
+def _uvs(mesh):
+    """UV maps, the one to render with first."""
+    layers = sorted(mesh.uv_layers, key=lambda layer: not layer.active_render)
+    return [(layer.name, _array(layer.uv, "vector", 2, np.float32)) for layer in layers]
+
+
+def _colors(mesh):
+    """Colour attributes, the one to render with first."""
+    first = mesh.color_attributes.render_color_index
+    layers = list(mesh.color_attributes)
+    if 0 <= first < len(layers):
+        layers.insert(0, layers.pop(first))
+    return [(layer.name, _array(layer.data, "color", 4, np.float32)) for layer in layers]

@@ -1,0 +1,77 @@
+"""Which passes a view layer asks for, and what they are called in Blender.
+
+The engine's table of passes is the source: a pass's layer is its name in Blender. Here stands only
+which check box of Blender's asks for it.
+"""
+
+import penumbra
+
+# Check boxes of ViewLayer, by pass.
+_BOXES = {
+    "depth": "use_pass_z",
+    "mist": "use_pass_mist",
+    "position": "use_pass_position",
+    "normal": "use_pass_normal",
+    "vector": "use_pass_vector",
+    "uv": "use_pass_uv",
+    "object_index": "use_pass_object_index",
+    "material_index": "use_pass_material_index",
+    "emission": "use_pass_emit",
+    "environment": "use_pass_environment",
+    "ao": "use_pass_ambient_occlusion",
+    "crypto_object": "use_pass_cryptomatte_object",
+    "crypto_material": "use_pass_cryptomatte_material",
+    "crypto_asset": "use_pass_cryptomatte_asset",
+}
+for _lobe in ("diffuse", "glossy", "transmission"):
+    for _part in ("direct", "indirect", "color"):
+        _BOXES[f"{_lobe}_{_part}"] = f"use_pass_{_lobe}_{_part}"
+
+_TYPES = {"X": "VALUE", "Z": "VALUE", "XYZ": "VECTOR", "XYZW": "VECTOR", "UVA": "VECTOR"}
+
+
+def chosen(view_layer):
+    """Names of the engine's passes that the view layer asks for, Combined first."""
+    own = view_layer.penumbra
+    names = ["combined"]
+    for row in penumbra.passes():
+        name = row["name"]
+        if name == "combined":
+            continue
+        if "<group>" in name:
+            if view_layer.lightgroups and (name.startswith("combined") or own.use_pass_shadow):
+                names.append(name.replace("<group>", "*"))
+        elif name in _BOXES:
+            if getattr(view_layer, _BOXES[name], False):
+                names.append(name)
+        elif getattr(own, f"use_pass_{name}", False):
+            names.append(name)
+    return names
+
+
+def layers(view_layer):
+    """(name, channels, type) of every layer that a render of the view layer has."""
+    rows = {row["name"]: row for row in penumbra.passes()}
+    groups = [group.name for group in view_layer.lightgroups]
+    result = []
+    for name in chosen(view_layer):
+        row = rows[name.replace("*", "<group>")]
+        channels = row["channels"]
+        kind = _TYPES.get(channels, "COLOR")
+        if name.startswith("crypto_"):
+            for level in range((view_layer.pass_cryptomatte_depth + 1) // 2):
+                result.append((f"{row['layer']}{level:02d}", channels, kind))
+        elif name.endswith("*"):
+            result += [(row["layer"].replace("<group>", group), channels, kind) for group in groups]
+        else:
+            result.append((row["layer"], channels, kind))
+    return result
+
+
+def own_boxes():
+    """Passes that Blender has no check box for: (name, layer, help)."""
+    return [
+        (row["name"], row["layer"], row["help"])
+        for row in penumbra.passes()
+        if row["name"] not in _BOXES and row["name"] != "combined" and "<group>" not in row["name"]
+    ]

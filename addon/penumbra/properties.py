@@ -1,0 +1,85 @@
+"""Properties that are the engine's own; they follow from its tables of settings and passes."""
+
+import bpy
+import penumbra
+
+from . import passes
+
+# What Blender has properties of its own for.
+_BLENDERS = {"passes", "threads", "half", "filter"}
+
+
+def _property(row):
+    kind, default = row["kind"], row["default"]
+    title = row["name"].replace("_", " ").capitalize()
+    common = {"name": title, "description": row["help"]}
+    if kind == "bool":
+        return bpy.props.BoolProperty(default=default == "on", **common)
+    if kind == "choice":
+        items = [(choice, choice.replace("_", " ").capitalize(), "") for choice in row["choices"]]
+        return bpy.props.EnumProperty(items=items, default=default, **common)
+    if kind == "text":
+        return bpy.props.StringProperty(default=default, **common)
+    # 0 stands for "not set" where a setting may be absent.
+    number = float(default or 0) if kind == "float" else int(default or 0)
+    lowest = 0 if not default else row["min"]
+    if kind == "float":
+        return bpy.props.FloatProperty(default=number, min=lowest, max=min(row["max"], 3e38), **common)
+    return bpy.props.IntProperty(default=number, min=lowest, max=min(row["max"], 2**31 - 1), **common)
+
+
+def _annotations():
+    return {row["name"]: _property(row) for row in penumbra.settings() if row["name"] not in _BLENDERS}
+
+
+class PenumbraSceneSettings(bpy.types.PropertyGroup):
+    """How Penumbra renders a scene."""
+
+    __annotations__ = _annotations()
+
+
+class PenumbraViewLayerSettings(bpy.types.PropertyGroup):
+    """Passes that are Penumbra's own."""
+
+    __annotations__ = {
+        f"use_pass_{name}": bpy.props.BoolProperty(name=layer, description=text)
+        for name, layer, text in passes.own_boxes()
+    }
+
+
+def settings(scene, view_layer):
+    """The engine's keyword arguments for a scene."""
+    own = scene.penumbra
+    result = {"passes": passes.chosen(view_layer)}
+    for row in penumbra.settings():
+        name = row["name"]
+        if name in _BLENDERS:
+            continue
+        value = getattr(own, name)
+        if not row["default"] and not value:
+            continue
+        result[name] = value
+    if scene.render.threads_mode == "FIXED":
+        result["threads"] = scene.render.threads
+    cycles = getattr(scene, "cycles", None)
+    kind = getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS").lower()
+    width = getattr(cycles, "filter_width", 1.5)
+    result["filter"] = "box:0.5" if kind == "box" else f"{kind}:{width}"
+    world = scene.world
+    if world is not None and "ao_distance" not in result:
+        result["ao_distance"] = world.light_settings.distance
+    return result
+
+
+def register():
+    bpy.utils.register_class(PenumbraSceneSettings)
+    bpy.utils.register_class(PenumbraViewLayerSettings)
+    bpy.types.Scene.penumbra = bpy.props.PointerProperty(type=PenumbraSceneSettings)
+    bpy.types.ViewLayer.penumbra = bpy.props.PointerProperty(type=PenumbraViewLayerSettings)
+
+
+def unregister():
+    del bpy.types.ViewLayer.penumbra
+    del bpy.types.Scene.penumbra
+    bpy.utils.unregister_class(PenumbraViewLayerSettings)
+    bpy.utils.unregister_class(PenumbraSceneSettings)

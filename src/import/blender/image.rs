@@ -1,0 +1,201 @@
+//! Images: files, packed bytes and pixels in memory, decoded once each and all at a time.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::document::ImageData;
+use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
+use crate::error::{Error, Place, Result, Warnings};
+use crate::import::image::{decode_image, load_image};
+
+/// An image that Blender holds in memory.
+#[derive(Clone, Debug)]
+pub enum ImageSource {
+    /// The bytes of a packed file.
+    Encoded(Vec<u8>),
+    /// Four floats per pixel, rows from the bottom, as `Image.pixels` has them.
+    Pixels {
+        /// Pixels per row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// `width × height × 4` numbers.
+        values: Vec<f32>,
+        /// True where they are linear (`Image.is_float`); else they are in the image's colour space.
+        linear: bool,
+    },
+}
+
+/// How a node looks at an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// Outside of 0 to 1.
+    pub wrap: Wrap,
+    /// Interpolation.
+    pub filter: Filter,
+}
+
+/// The images that nodes ask for; they are decoded by [`Images::finish`].
+pub struct Images<'a> {
+    data: &'a HashMap<String, ImageData>,
+    in_memory: &'a HashMap<String, ImageSource>,
+    place: &'a Place,
+    /// Name and tile of each image asked for.
+    wanted: Vec<(String, Option<u32>)>,
+    textures: Vec<TextureDesc>,
+}
+
+impl<'a> Images<'a> {
+    /// No image is asked for yet.
+    pub fn new(
+        data: &'a HashMap<String, ImageData>,
+        in_memory: &'a HashMap<String, ImageSource>,
+        place: &'a Place,
+    ) -> Self {
+        Self { data, in_memory, place, wanted: Vec::new(), textures: Vec::new() }
+    }
+
+    /// What Blender says of the image of this name.
+    pub fn data(&self, name: &str) -> Option<&'a ImageData> {
+        self.data.get(name)
+    }
+
+    /// Index of the image, or of one tile of it; `None` where there is none of this name.
+    pub fn image(&mut self, name: &str, tile: Option<u32>) -> Option<u32> {
+        self.data.get(name)?;
+        let known = self.wanted.iter().position(|(known, of)| known == name && *of == tile);
+        Some(known.unwrap_or_else(|| {
+            self.wanted.push((name.to_owned(), tile));
+            self.wanted.len() - 1
+        }) as u32)
+    }
+
+    /// Index of a way to look the image up.
+    pub fn texture(&mut self, name: &str, tile: Option<u32>, look: Look) -> Option<u32> {
+        let image = self.image(name, tile)?;
+        let Look { wrap, filter } = look;
+        let texture = TextureDesc { place: self.place.at(name), image, wrap_u: wrap, wrap_v: wrap, filter };
+        let known = self.textures.iter().position(|known| *known == texture);
+        Some(known.unwrap_or_else(|| {
+            self.textures.push(texture);
+            self.textures.len() - 1
+        }) as u32)
+    }
+
+    /// All images and textures that were asked for. One that can't be read is told, and is magenta as
+    /// in Cycles.
+    pub fn finish(self, warnings: &mut Warnings) -> (Vec<ImageDesc>, Vec<TextureDesc>) {
+        let decoded: Vec<Result<ImageDesc>> =
+            self.wanted.par_iter().map(|(name, tile)| self.decode(name, *tile)).collect();
+        let images = decoded
+            .into_iter()
+            .zip(&self.wanted)
+            .map(|(image, (name, _))| {
+                image.unwrap_or_else(|error| {
+                    warnings.push(&self.place.at(name), format!("{error}: magenta stands for it"));
+                    magenta(name, self.place)
+                })
+            })
+            .collect();
+        (images, self.textures)
+    }
+
+    fn decode(&self, name: &str, tile: Option<u32>) -> Result<ImageDesc> {
+        let data = &self.data[name];
+        let color_space = color_space(&data.colorspace);
+        let place = self.place.at(name);
+        let name: Arc<str> = name.into();
+        if !data.in_memory {
+            let path = tile.map_or_else(|| data.path.clone(), |tile| data.path.replace("<UDIM>", &tile.to_string()));
+            if path.is_empty() {
+                return Err(Error::invalid(&place, "the image has neither a file nor pixels"));
+            }
+            return load_image(Path::new(&path), color_space);
+        }
+        match self.in_memory.get(&*name) {
+            None => Err(Error::invalid(&place, "the image's pixels were not handed over")),
+            Some(ImageSource::Encoded(bytes)) => {
+                let hint = Path::new(&data.path).extension().and_then(|extension| extension.to_str());
+                decode_image(bytes, hint, &name, &place, color_space)
+            }
+            Some(ImageSource::Pixels { width, height, values, linear }) => {
+                let (row, rows) = (*width as usize * 4, *height as usize);
+                if row == 0 || values.len() != row * rows || values.is_empty() {
+                    let what = format!("{} numbers for {width}x{height} pixels", values.len());
+                    return Err(Error::invalid(&place, what));
+                }
+                let pixels = PixelData::F32(values.chunks_exact(row).rev().flatten().copied().collect());
+                let color_space = if *linear { ColorSpace::Linear } else { color_space };
+                let (width, height) = (*width, *height);
+                Ok(ImageDesc { name, place, width, height, channels: 4, color_space, pixels })
+            }
+        }
+    }
+}
+
+/// The transfer function of a colour space of Blender's configuration.
+fn color_space(name: &str) -> ColorSpace {
+    match name {
+        "sRGB" | "sRGB OETF" | "Filmic sRGB" | "" => ColorSpace::Srgb,
+        _ => ColorSpace::Linear,
+    }
+}
+
+fn magenta(name: &str, place: &Place) -> ImageDesc {
+    ImageDesc {
+        name: name.into(),
+        place: place.at(name),
+        width: 1,
+        height: 1,
+        channels: 3,
+        color_space: ColorSpace::Linear,
+        pixels: PixelData::U8(vec![255, 0, 255]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn look() -> Look {
+        Look { wrap: Wrap::Repeat, filter: Filter::Linear }
+    }
+
+    #[test]
+    fn each_image_and_each_look_is_there_once() {
+        let data: HashMap<String, ImageData> =
+            ["a", "b"].map(|name| (name.to_owned(), ImageData { in_memory: true, ..ImageData::default() })).into();
+        let pixels = ImageSource::Pixels { width: 1, height: 2, values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0], linear: true };
+        let in_memory = [("a".to_owned(), pixels)].into();
+        let place = Place::default();
+        let mut images = Images::new(&data, &in_memory, &place);
+        assert_eq!(images.texture("a", None, look()), Some(0));
+        assert_eq!(images.texture("b", None, look()), Some(1));
+        assert_eq!(images.texture("a", None, look()), Some(0));
+        assert_eq!(images.texture("a", None, Look { wrap: Wrap::Clamp, ..look() }), Some(2));
+        assert_eq!(images.texture("c", None, look()), None);
+        let mut warnings = Warnings::new();
+        let (images, textures) = images.finish(&mut warnings);
+        assert_eq!(textures.iter().map(|t| t.image).collect::<Vec<_>>(), [0, 1, 0]);
+        // The top row comes first.
+        assert_eq!(images[0].pixels.get(0), 1.0);
+        assert_eq!(images[1].pixels, PixelData::U8(vec![255, 0, 255]));
+        let said: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(said, ["b: b: the image's pixels were not handed over: magenta stands for it"]);
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_is_named() {
+        let data: HashMap<String, ImageData> =
+            [("wood".to_owned(), ImageData { path: "/no/wood.png".into(), ..ImageData::default() })].into();
+        let (in_memory, place) = (HashMap::new(), Place::default());
+        let mut images = Images::new(&data, &in_memory, &place);
+        images.image("wood", None);
+        let mut warnings = Warnings::new();
+        images.finish(&mut warnings);
+        assert!(warnings.iter().next().unwrap().what.contains("/no/wood.png"));
+    }
+}

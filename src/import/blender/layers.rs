@@ -1,0 +1,59 @@
+//! UV maps by name.
+//!
+//! Materials name UV maps, meshes number them. Set 0 is the map that each mesh renders with; a map that
+//! some material names has the same number in all meshes.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::mesh::NamedMesh;
+use crate::desc::Attribute;
+
+/// Which set of UVs each name stands for.
+#[derive(Debug, Default)]
+pub struct UvSets {
+    sets: HashMap<String, u32>,
+    /// Names of the sets from 1 on.
+    names: Vec<String>,
+}
+
+impl UvSets {
+    /// Sets for the maps of `names` in `meshes`.
+    pub fn new<'a>(names: impl IntoIterator<Item = String>, meshes: impl Iterator<Item = &'a NamedMesh> + Clone) -> Self {
+        let mut sets = Self::default();
+        for name in names {
+            if sets.sets.contains_key(&name) || name.is_empty() {
+                continue;
+            }
+            let is_first = |mesh: &NamedMesh| mesh.uv_names.first().is_none_or(|first| **first == *name);
+            let set = if meshes.clone().all(is_first) {
+                0
+            } else {
+                sets.names.push(name.clone());
+                sets.names.len() as u32
+            };
+            sets.sets.insert(name, set);
+        }
+        sets
+    }
+
+    /// The set of a name; "" is the one to render with. `None` for a name that no material was known to use.
+    pub fn set(&self, name: &str) -> Option<u32> {
+        if name.is_empty() { Some(0) } else { self.sets.get(name).copied() }
+    }
+
+    /// The UV sets of `mesh`: the one to render with, then the named ones; 0 everywhere for one that it
+    /// lacks, as in Cycles.
+    pub fn of(&self, mesh: &NamedMesh) -> Vec<Attribute<[f32; 2]>> {
+        let maps = &mesh.mesh.uvs;
+        let none = || Attribute::Point(vec![[0.0, 1.0]; mesh.mesh.points.len()]);
+        let named = |name: &String| {
+            let index = mesh.uv_names.iter().position(|known: &Arc<str>| **known == **name);
+            index.and_then(|index| maps.get(index).cloned()).unwrap_or_else(none)
+        };
+        match maps.first() {
+            None if self.names.is_empty() => Vec::new(),
+            first => std::iter::once(first.cloned().unwrap_or_else(none)).chain(self.names.iter().map(named)).collect(),
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Materials: what a surface's nodes compute.
+
+use super::document::{Document, MaterialData};
+use super::image::Images;
+use super::nodes;
+use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc};
+use crate::error::{Place, Warnings};
+
+/// Adds every material of `document`, in its order.
+pub fn materials(document: &Document, images: &mut Images<'_>, desc: &mut SceneDesc, warnings: &mut Warnings) {
+    let place = desc.place.clone();
+    desc.materials = document.materials.iter().map(|data| material(data, images, &place, warnings)).collect();
+}
+
+fn material(data: &MaterialData, images: &mut Images<'_>, place: &Place, warnings: &mut Warnings) -> MaterialDesc {
+    let base = MaterialDesc {
+        name: data.name.as_str().into(),
+        place: place.at(&data.name),
+        material_index: data.pass_index,
+        ..MaterialDesc::default()
+    };
+    match &data.nodes {
+        Some(tree) => nodes::surface(tree, base, images, warnings),
+        None => {
+            let [r, g, b, _] = data.diffuse_color;
+            let plain = ScalarInput::constant;
+            MaterialDesc { base_color: ColorInput::constant([r, g, b]), roughness: plain(1.0), specular: plain(0.0), ..base }
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! The Blender door: what the add-on hands over becomes a `SceneDesc`.
+//!
+//! The add-on is thin: it copies properties by name into one JSON [`Document`], and arrays of meshes
+//! and images as they lie in memory. What they mean, from the watts of a lamp to the sockets of a node,
+//! is decided here, where it is tested without Blender. The world stays Blender's, z up, so that the
+//! passes in world space hold the numbers that the artist sees.
+
+mod camera;
+mod document;
+mod image;
+mod light;
+mod material;
+mod mesh;
+mod nodes;
+mod scene;
+mod transform;
+mod world;
+
+pub use document::{
+    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, RenderData,
+    VisibilityData, WorldData,
+};
+pub use image::ImageSource;
+pub use mesh::{LayerArray, MeshArrays};
+pub use nodes::{NodeData, SocketData, TreeData, Value};
+pub use scene::BlenderScene;

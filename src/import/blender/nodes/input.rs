@@ -1,0 +1,164 @@
+//! Nodes of the Input menu.
+
+use super::flow::{At, Flow};
+use crate::desc::graph::{Leaf, PathInfo, Quantity, Space, ValueId};
+
+/// Value and RGB.
+pub fn constant<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
+    let value = at.node.outputs.first().map(|socket| socket.value.places()).unwrap_or_default();
+    flow.graph.constant(value)
+}
+
+/// Texture Coordinate.
+pub fn texture_coordinate<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    match output {
+        "Generated" => flow.graph.leaf(Leaf::Generated),
+        "Normal" => flow.graph.leaf(Leaf::ObjectNormal),
+        "UV" => flow.graph.uv_upwards(0),
+        "Object" => object_coordinates(flow, at),
+        "Camera" => flow.graph.leaf(Leaf::CameraPosition),
+        "Window" => flow.graph.leaf(Leaf::Window),
+        _ => flow.graph.reflection(),
+    }
+}
+
+/// The point in the space of the object that the node names, or of its own.
+fn object_coordinates<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ValueId {
+    let matrix: Option<[[f64; 4]; 4]> =
+        at.node.properties.get("object").and_then(|json| serde_json::from_value(json.clone()).ok());
+    let Some(matrix) = matrix else { return flow.graph.leaf(Leaf::ObjectPosition) };
+    let inverse = super::super::transform::affine(&matrix).inverse();
+    let [x, y, z] = [inverse.matrix3.x_axis, inverse.matrix3.y_axis, inverse.matrix3.z_axis];
+    let row = |i: usize| [x[i], y[i], z[i], inverse.translation[i]];
+    let position = flow.graph.leaf(Leaf::Position);
+    flow.graph.affine([row(0), row(1), row(2)], position)
+}
+
+/// UV Map.
+pub fn uv_map<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
+    uv_set(flow, at.node.text("uv_map"))
+}
+
+/// The UV map of a name, v upwards.
+pub fn uv_set(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
+    let set = flow.uv_sets.set(name).unwrap_or(0);
+    flow.graph.uv_upwards(set)
+}
+
+/// Geometry.
+pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
+    let leaf = match output {
+        "Position" => Leaf::Position,
+        "Normal" => Leaf::Normal,
+        "Tangent" => Leaf::RadialTangent,
+        "True Normal" => Leaf::TrueNormal,
+        "Incoming" => Leaf::Incoming,
+        "Parametric" => Leaf::Parametric,
+        "Backfacing" => Leaf::Backfacing,
+        _ => {
+            flow.warn(format!("the output {output} of the Geometry node is not supported; 0.5 is taken for it"));
+            return flow.graph.number(0.5);
+        }
+    };
+    flow.graph.leaf(leaf)
+}
+
+/// Attribute.
+pub fn attribute<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let name = at.node.text("attribute_name");
+    if at.node.text("attribute_type") == "GEOMETRY" && flow.uv_sets.set(name).is_some() && !name.is_empty() {
+        let uv = uv_set(flow, name);
+        return if output == "Fac" { flow.graph.average(uv) } else { uv };
+    }
+    let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0; 4] });
+    match output {
+        "Fac" => flow.graph.average(value),
+        "Alpha" => flow.graph.place(value, 3),
+        _ => value,
+    }
+}
+
+/// Color Attribute.
+pub fn color_attribute<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let name = at.node.text("layer_name");
+    let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0; 4] });
+    if output == "Alpha" { flow.graph.place(value, 3) } else { value }
+}
+
+/// Object Info.
+pub fn object_info<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
+    let leaf = match output {
+        "Location" => Leaf::ObjectLocation,
+        "Color" => Leaf::ObjectColor,
+        "Alpha" => {
+            let color = flow.graph.leaf(Leaf::ObjectColor);
+            return flow.graph.place(color, 3);
+        }
+        "Object Index" => Leaf::ObjectIndex,
+        "Material Index" => Leaf::MaterialIndex,
+        _ => Leaf::ObjectRandom,
+    };
+    flow.graph.leaf(leaf)
+}
+
+/// Light Path.
+pub fn light_path<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
+    let info = match output {
+        "Is Camera Ray" => PathInfo::IsCamera,
+        "Is Shadow Ray" => PathInfo::IsShadow,
+        "Is Diffuse Ray" => PathInfo::IsDiffuse,
+        "Is Glossy Ray" => PathInfo::IsGlossy,
+        "Is Singular Ray" => PathInfo::IsSingular,
+        "Is Reflection Ray" => PathInfo::IsReflection,
+        "Is Transmission Ray" => PathInfo::IsTransmission,
+        "Ray Length" => PathInfo::Length,
+        "Ray Depth" => PathInfo::Depth,
+        "Diffuse Depth" => PathInfo::DiffuseDepth,
+        "Glossy Depth" => PathInfo::GlossyDepth,
+        "Transmission Depth" => PathInfo::TransmissionDepth,
+        "Transparent Depth" => PathInfo::TransparentDepth,
+        // There are no volumes that scatter, and no portals.
+        _ => return flow.graph.number(0.0),
+    };
+    flow.graph.leaf(Leaf::Path(info))
+}
+
+/// Camera Data.
+pub fn camera_data<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
+    use crate::desc::graph::Function;
+    let position = flow.graph.leaf(Leaf::CameraPosition);
+    match output {
+        "View Z Depth" => {
+            let z = flow.graph.place(position, 2);
+            flow.graph.math(crate::desc::graph::Math::Absolute, &[z])
+        }
+        "View Distance" => flow.graph.apply(Function::Length(3), &[position]),
+        _ => flow.graph.apply(Function::Normalize(3), &[position]),
+    }
+}
+
+/// Tangent; world space.
+pub fn tangent<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
+    if at.node.text("direction_type") == "UV_MAP" {
+        let tangent = flow.graph.leaf(Leaf::Tangent);
+        return flow.graph.transform(Quantity::Vector, Space::Object, Space::World, tangent);
+    }
+    if at.node.text("axis") != "Z" {
+        flow.warn("radial tangents are around the z axis, whatever axis the Tangent node names");
+    }
+    flow.graph.leaf(Leaf::RadialTangent)
+}
+
+/// Fresnel.
+pub fn fresnel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
+    let ior = flow.input(at, "IOR");
+    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    flow.graph.fresnel(ior, normal)
+}
+
+/// Layer Weight.
+pub fn layer_weight<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let blend = flow.input(at, "Blend");
+    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    if output == "Fresnel" { flow.graph.layer_fresnel(blend, normal) } else { flow.graph.layer_facing(blend, normal) }
+}

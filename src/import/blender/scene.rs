@@ -1,0 +1,173 @@
+//! A scene of Blender's, kept between renders so that only what changes is handed over again.
+
+use std::collections::HashMap;
+
+use super::document::Document;
+use super::image::{ImageSource, Images};
+use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
+use super::transform::affine_of_floats;
+use super::{camera, light, material, nodes, world};
+use crate::desc::{InstanceDesc, LightLinks, SceneDesc};
+use crate::error::{Error, Place, Result, Warnings};
+
+/// Everything that the add-on has handed over so far.
+#[derive(Debug, Default)]
+pub struct BlenderScene {
+    document: Document,
+    meshes: HashMap<u64, NamedMesh>,
+    images: HashMap<String, ImageSource>,
+    /// Index of the object of each instance, and its matrix by rows.
+    instances: Vec<(u32, [f32; 16])>,
+    /// What was told of meshes as they came.
+    of_meshes: HashMap<u64, Warnings>,
+}
+
+impl BlenderScene {
+    /// Takes in all but meshes, images in memory and placements.
+    ///
+    /// # Errors
+    /// JSON that is no [`Document`].
+    pub fn set_document(&mut self, json: &str) -> Result<()> {
+        self.document = serde_json::from_str(json)
+            .map_err(|error| Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}")))?;
+        Ok(())
+    }
+
+    /// Takes in the mesh that objects name by `key`, in place of an earlier one.
+    ///
+    /// # Errors
+    /// Arrays that don't fit together; the mesh of that key is gone then.
+    pub fn set_mesh(
+        &mut self,
+        key: u64,
+        name: &str,
+        arrays: &MeshArrays<'_>,
+        uvs: &[LayerArray<'_>],
+        colors: &[LayerArray<'_>],
+    ) -> Result<()> {
+        self.remove_mesh(key);
+        let mut warnings = Warnings::new();
+        let mesh = mesh::mesh(name, &self.place(), arrays, uvs, colors, &mut warnings)?;
+        self.meshes.insert(key, mesh);
+        self.of_meshes.insert(key, warnings);
+        Ok(())
+    }
+
+    /// Forgets a mesh.
+    pub fn remove_mesh(&mut self, key: u64) {
+        self.meshes.remove(&key);
+        self.of_meshes.remove(&key);
+    }
+
+    /// Takes in an image that the document says is in memory.
+    pub fn set_image(&mut self, name: &str, image: ImageSource) {
+        self.images.insert(name.to_owned(), image);
+    }
+
+    /// Takes in all placements: object indices and as many matrices of sixteen floats by rows.
+    ///
+    /// # Errors
+    /// Lists of different lengths.
+    pub fn set_instances(&mut self, objects: &[u32], matrices: &[f32]) -> Result<()> {
+        let (matrices, rest) = matrices.as_chunks::<16>();
+        if !rest.is_empty() || matrices.len() != objects.len() {
+            let what = format!("{} matrices for {} instances", matrices.len(), objects.len());
+            return Err(Error::invalid(&self.place(), what));
+        }
+        self.instances = objects.iter().copied().zip(matrices.iter().copied()).collect();
+        Ok(())
+    }
+
+    fn place(&self) -> Place {
+        match self.document.file.as_str() {
+            "" => Place::default(),
+            file => Place::file(file),
+        }
+    }
+
+    /// The scene as authored.
+    ///
+    /// # Errors
+    /// None so far: what can't be used is told and replaced.
+    pub fn scene(&self, warnings: &mut Warnings) -> Result<SceneDesc> {
+        let (document, place) = (&self.document, self.place());
+        let mut desc = SceneDesc { place: place.clone(), ..SceneDesc::default() };
+        desc.render.resolution = Some(document.render.size);
+        if let Some(data) = &document.camera {
+            desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
+            desc.render.camera = Some(data.name.as_str().into());
+        }
+        let mut images = Images::new(&document.images, &self.images, &place);
+        let of_object = self.add_instances(&mut desc, warnings);
+        material::materials(document, &mut images, &mut desc, warnings);
+        self.add_lights(&of_object, &mut desc, &mut images, warnings);
+        (desc.images, desc.textures) = images.finish(warnings);
+        Ok(desc)
+    }
+
+    /// Adds what is placed, and the meshes of it; returns the instances of each object.
+    fn add_instances(&self, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
+        let document = &self.document;
+        let mut index_of: HashMap<u64, u32> = HashMap::new();
+        let mut of_object = vec![Vec::new(); document.objects.len()];
+        let mut lost = 0;
+        for (object, matrix) in &self.instances {
+            let Some(data) = document.objects.get(*object as usize) else {
+                lost += 1;
+                continue;
+            };
+            let Some(mesh) = self.meshes.get(&data.mesh) else { continue };
+            let index = *index_of.entry(data.mesh).or_insert_with(|| {
+                warnings.extend(self.of_meshes.get(&data.mesh).cloned().unwrap_or_default());
+                desc.meshes.push(mesh.mesh.clone());
+                desc.meshes.len() as u32 - 1
+            });
+            of_object[*object as usize].push(desc.instances.len() as u32);
+            desc.instances.push(InstanceDesc {
+                name: data.name.as_str().into(),
+                place: desc.place.at(&data.name),
+                asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
+                mesh: index,
+                transform: affine_of_floats(matrix),
+                motion: Vec::new(),
+                materials: data.materials.clone(),
+                object_index: data.pass_index,
+                visibility: data.visibility.into(),
+                links: Default::default(),
+            });
+        }
+        if lost > 0 {
+            warnings.push(&desc.place, format!("{lost} instances of unknown objects are left out"));
+        }
+        for (object, data) in document.objects.iter().enumerate() {
+            if data.lightgroup.is_empty() && data.receivers.is_none() && data.blockers.is_none() {
+                continue;
+            }
+            let links = light::links_of_object(data, &of_object);
+            for &instance in &of_object[object] {
+                desc.instances[instance as usize].links = links.clone();
+            }
+        }
+        of_object
+    }
+
+    fn add_lights(
+        &self,
+        of_object: &[Vec<u32>],
+        desc: &mut SceneDesc,
+        images: &mut Images<'_>,
+        warnings: &mut Warnings,
+    ) {
+        let document = &self.document;
+        for data in &document.lights {
+            let shader = nodes::lamp(data, images, &desc.place, warnings);
+            let Some(mut light) = light::light(data, &shader, &desc.place, warnings) else { continue };
+            let own = light::links(&data.lightgroup, data.receivers.as_ref(), data.blockers.as_ref(), of_object);
+            light.links = LightLinks { cast_shadow: light.links.cast_shadow, ..own };
+            desc.lights.push(light);
+        }
+        if let Some(world) = &document.world {
+            desc.lights.extend(world::dome(world, &document.render, images, &desc.place, warnings));
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! From a description to a picture that tells of its making: what the command line and Python share.
+
+use std::time::SystemTime;
+
+use crate::desc::{CameraDesc, SceneDesc};
+use crate::error::Warnings;
+use crate::film::Film;
+use crate::output::Metadata;
+use crate::render::Rendered;
+use crate::scene::{Prepared, View};
+use crate::settings::{SETTINGS, Settings};
+
+/// Camera and size: what the user asked for, or what the file asks for.
+pub fn view(camera: Option<String>, size: Option<[u32; 2]>, desc: &SceneDesc, warnings: &mut Warnings) -> View {
+    let own = &desc.render;
+    let camera = camera.or_else(|| {
+        let name = own.camera.as_deref()?;
+        let is_it = |c: &CameraDesc| *c.name == *name || c.place.node.as_deref() == Some(name);
+        if !desc.cameras.iter().any(is_it) {
+            warnings.push(&desc.place, format!("asks for the camera {name}, which does not exist; another is taken"));
+            return None;
+        }
+        Some(name.to_owned())
+    });
+    View { camera, size: size.or(own.resolution) }
+}
+
+/// `settings` with the passes that the file asks for, where there are any.
+pub fn with_own_passes(settings: &Settings, desc: &SceneDesc, warnings: &mut Warnings) -> Settings {
+    let mut settings = settings.clone();
+    let own = desc.render.passes.join(",");
+    let passes = SETTINGS.iter().find(|def| def.name == "passes" && !own.is_empty());
+    if let Some(Err(what)) = passes.map(|def| def.set(&mut settings, &own)) {
+        warnings.push(&desc.place, format!("asks for passes that can't be rendered: {what}; left out"));
+    }
+    settings
+}
+
+/// Samples per pixel so far, the mean.
+pub fn samples_per_pixel(film: &Film) -> f64 {
+    film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()))
+}
+
+/// What the picture of `rendered` says about its making; `warnings` are all that were told.
+pub fn metadata(
+    scene: String,
+    frame: Option<f64>,
+    prepared: &Prepared,
+    rendered: &Rendered,
+    settings: &Settings,
+    warnings: &Warnings,
+) -> Metadata {
+    let bad = rendered.film.non_finite();
+    let spp = samples_per_pixel(&rendered.film);
+    Metadata {
+        scene,
+        camera: prepared.camera.to_string(),
+        frame,
+        samples: spp,
+        seed: settings.seed,
+        seconds: rendered.elapsed.as_secs_f64(),
+        date: Some(SystemTime::now()),
+        non_finite: bad.count,
+        non_finite_first: bad.first,
+        warnings: warnings.iter().map(ToString::to_string).collect(),
+        settings: SETTINGS
+            .iter()
+            .filter(|def| def.name != "spp" || settings.spp != Settings::NO_LIMIT)
+            .map(|def| (def.name.to_owned(), def.get(settings)))
+            .collect(),
+        comments: rendered.interrupted.then(|| format!("interrupted at {spp:.1} samples per pixel")),
+        manifests: prepared.scene.ids.manifests(),
+        ..Metadata::default()
+    }
+}

@@ -1,0 +1,76 @@
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class Progress(TypedDict):
+    done: float
+    spp: float
+    target_spp: int | None
+    elapsed: float
+    remaining: float | None
+
+class Picture:
+    width: int
+    height: int
+    layers: list[str]
+    spp: float
+    seconds: float
+    camera: str
+    warnings: list[str]
+    interrupted: bool
+    def channels(self, name: str) -> str: ...
+    def __getitem__(self, name: str) -> NDArray[np.float32]: ...
+    def __contains__(self, name: object) -> bool: ...
+    def __len__(self) -> int: ...
+    def flat(self, name: str) -> NDArray[np.float32]: ...
+    def save(self, path: str | PathLike[str], *, view_layer: str = "ViewLayer") -> None: ...
+    def save_png(self, path: str | PathLike[str], layer: str = "Combined") -> None: ...
+
+class Scene:
+    def __init__(self) -> None: ...
+    def set_document(self, json: str) -> None: ...
+    def set_mesh(
+        self,
+        key: int,
+        name: str,
+        *,
+        positions: NDArray[np.float32],
+        corner_verts: NDArray[np.int32],
+        triangles: NDArray[np.int32],
+        normals: NDArray[np.float32] | None = None,
+        material_index: NDArray[np.int32] | None = None,
+        triangle_polygons: NDArray[np.int32] | None = None,
+        uvs: Sequence[tuple[str, NDArray[np.float32]]] = ...,
+        colors: Sequence[tuple[str, NDArray[np.float32]]] = ...,
+    ) -> None: ...
+    def remove_mesh(self, key: int) -> None: ...
+    def set_image_bytes(self, name: str, bytes: bytes) -> None: ...
+    def set_image_pixels(
+        self, name: str, width: int, height: int, pixels: NDArray[np.float32], linear: bool
+    ) -> None: ...
+    def set_instances(self, objects: NDArray[np.uint32], matrices: NDArray[np.float32]) -> None: ...
+
+def passes() -> list[dict[str, str]]: ...
+def settings() -> list[dict[str, Any]]: ...
+def render(
+    scene: str | PathLike[str] | Scene | Any,
+    *,
+    camera: str | None = None,
+    size: tuple[int, int] | None = None,
+    frame: float | None = None,
+    subdivision: int = 2,
+    variants: Sequence[str] = ...,
+    observer: Callable[[Progress | None], object] | None = None,
+    on_picture: Callable[[Picture], object] | None = None,
+    picture_interval: float = 1.0,
+    passes: Sequence[str] | str | None = None,
+    spp: int | None = None,
+    time: float | None = None,
+    seed: int | None = None,
+    **settings: Any,
+) -> Picture: ...

@@ -1,0 +1,119 @@
+//! `penumbra.render`.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyList, PyString, PyTuple};
+
+use super::exception;
+use super::job::{Watch, run};
+use super::picture::Picture;
+use super::scene::Scene;
+use crate::desc::SceneDesc;
+use crate::error::{Result, Warnings};
+use crate::import::{self, ImportOptions};
+use crate::job;
+use crate::render::render as trace;
+use crate::scene::prepare;
+use crate::settings::{SETTINGS, Settings};
+
+/// Where a scene comes from.
+enum Source<'py> {
+    File(PathBuf),
+    Memory(PyRef<'py, Scene>),
+}
+
+/// Renders a scene: a path of a USD or glTF file, or a Scene.
+///
+/// Settings are keyword arguments with the names of the command line (spp, time, passes, …); passes may
+/// be a list. `observer(progress)` is called on this thread at least 20 times a second with a dict of
+/// done, spp, target_spp, elapsed and remaining (or None where nothing is new), and stops the render by
+/// a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
+#[pyfunction]
+#[pyo3(signature = (scene, *, camera=None, size=None, frame=None, subdivision=2, variants=Vec::new(),
+    observer=None, on_picture=None, picture_interval=1.0, **settings))]
+pub fn render(
+    py: Python<'_>,
+    scene: &Bound<'_, PyAny>,
+    camera: Option<String>,
+    size: Option<[u32; 2]>,
+    frame: Option<f64>,
+    subdivision: u32,
+    variants: Vec<String>,
+    observer: Option<Py<PyAny>>,
+    on_picture: Option<Py<PyAny>>,
+    picture_interval: f64,
+    settings: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Picture> {
+    let (settings, passes_given) = settings_of(settings)?;
+    let source = match scene.cast::<Scene>() {
+        Ok(scene) => Source::Memory(scene.clone().try_borrow()?),
+        Err(_) => Source::File(scene.extract::<PathBuf>().map_err(|_| {
+            let kind = scene.get_type().name().map_or_else(|_| "this".into(), |name| name.to_string());
+            PyTypeError::new_err(format!("a scene is a path or a penumbra.Scene, not {kind}"))
+        })?),
+    };
+    let picture_interval = Duration::try_from_secs_f64(picture_interval)
+        .map_err(|_| PyValueError::new_err("picture_interval must be a number of seconds, not negative"))?;
+    let watch = Watch { observer, on_picture, picture_interval };
+    let options = ImportOptions { frame, subdivision, variants, ..ImportOptions::default() };
+    let half = settings.half;
+    let (name, read) = match &source {
+        Source::File(path) => (path.display().to_string(), py.detach(|| load(path, &options))),
+        Source::Memory(scene) => ("Blender".to_owned(), scene.read(py)),
+    };
+    let (desc, mut warnings) = read.map_err(|error| exception(&error))?;
+    run(py, &watch, |mailbox| {
+        let view = job::view(camera, size, &desc, &mut warnings);
+        let settings = if passes_given { settings } else { job::with_own_passes(&settings, &desc, &mut warnings) };
+        let prepared = prepare(desc, &view, &settings)?;
+        warnings.extend(prepared.warnings.clone());
+        let rendered = trace(&prepared.scene, &settings, mailbox)?;
+        let metadata = job::metadata(name, frame, &prepared, &rendered, &settings, &warnings);
+        Ok(Picture { picture: rendered.film.develop(), metadata, half, interrupted: rendered.interrupted })
+    })
+}
+
+fn load(path: &Path, options: &ImportOptions) -> Result<(SceneDesc, Warnings)> {
+    let mut warnings = Warnings::new();
+    Ok((import::scene(path, options, &mut warnings)?, warnings))
+}
+
+/// The settings that were given by name, and whether passes were among them.
+fn settings_of(given: Option<&Bound<'_, PyDict>>) -> PyResult<(Settings, bool)> {
+    let mut settings = Settings::default();
+    let (mut passes, mut spp) = (false, false);
+    for (name, value) in given.into_iter().flatten() {
+        let name: String = name.extract()?;
+        let Some(def) = SETTINGS.iter().find(|def| def.name == name) else {
+            let names: Vec<&str> = SETTINGS.iter().map(|def| def.name).collect();
+            return Err(PyTypeError::new_err(format!("no setting \"{name}\"; there are {}", names.join(", "))));
+        };
+        if value.is_none() {
+            continue;
+        }
+        let text = text_of(&value)?;
+        def.set(&mut settings, &text).map_err(|what| PyValueError::new_err(format!("{name}={text}: {what}")))?;
+        passes |= name == "passes";
+        spp |= name == "spp";
+    }
+    // Alone, the time is the rule.
+    if settings.time.is_some() && !spp {
+        settings.spp = Settings::NO_LIMIT;
+    }
+    Ok((settings, passes))
+}
+
+/// A value as it would be typed.
+fn text_of(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(flag) = value.cast::<PyBool>() {
+        return Ok(if flag.is_true() { "on" } else { "off" }.to_owned());
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let parts: Vec<String> = value.extract()?;
+        return Ok(parts.join(","));
+    }
+    if value.is_instance_of::<PyString>() { value.extract() } else { Ok(value.str()?.to_string()) }
+}

@@ -1,0 +1,126 @@
+//! A scene that is handed over piece by piece.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numpy::{PyReadonlyArray1, PyReadonlyArrayDyn};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::exception;
+use crate::desc::SceneDesc;
+use crate::error::{Result, Warnings};
+use crate::import::blender::{BlenderScene, ImageSource, LayerArray, MeshArrays};
+
+/// A scene in Blender's terms: one document and the arrays of its meshes. The add-on fills it; pieces
+/// that are set again replace the old ones.
+#[pyclass(frozen)]
+#[derive(Default)]
+pub struct Scene {
+    inner: Mutex<BlenderScene>,
+}
+
+/// A flat array of floats, and its numbers.
+type Floats<'py> = PyReadonlyArrayDyn<'py, f32>;
+/// A flat array of integers.
+type Ints<'py> = PyReadonlyArrayDyn<'py, i32>;
+/// A layer of a mesh.
+type Layer<'py> = (String, Floats<'py>);
+
+impl Scene {
+    /// The scene behind the lock; a panic while it was held leaves old values, never half of one.
+    pub(super) fn lock(&self) -> MutexGuard<'_, BlenderScene> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The scene as authored, and what was told of it.
+    pub(super) fn read(&self, py: Python<'_>) -> Result<(SceneDesc, Warnings)> {
+        py.detach(|| {
+            let mut warnings = Warnings::new();
+            let desc = self.lock().scene(&mut warnings)?;
+            Ok((desc, warnings))
+        })
+    }
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes in everything but meshes, images in memory and placements: JSON.
+    fn set_document(&self, json: &str) -> PyResult<()> {
+        self.lock().set_document(json).map_err(|error| exception(&error))
+    }
+
+    /// Takes in the mesh `key`. Arrays are C-contiguous, float32 and int32: positions (n, 3),
+    /// corner_verts (c), triangles (t, 3) of corners, normals (c, 3) or (n, 3), material_index per
+    /// polygon with triangle_polygons (t), uvs [(name, (c, 2))], colors [(name, (c or n, 4))].
+    #[pyo3(signature = (key, name, *, positions, corner_verts, triangles, normals=None, material_index=None,
+        triangle_polygons=None, uvs=Vec::new(), colors=Vec::new()))]
+    fn set_mesh(
+        &self,
+        py: Python<'_>,
+        key: u64,
+        name: &str,
+        positions: Floats<'_>,
+        corner_verts: Ints<'_>,
+        triangles: Ints<'_>,
+        normals: Option<Floats<'_>>,
+        material_index: Option<Ints<'_>>,
+        triangle_polygons: Option<Ints<'_>>,
+        uvs: Vec<Layer<'_>>,
+        colors: Vec<Layer<'_>>,
+    ) -> PyResult<()> {
+        let arrays = MeshArrays {
+            positions: floats(&positions)?,
+            corner_verts: ints(&corner_verts)?,
+            triangles: ints(&triangles)?,
+            normals: normals.as_ref().map_or(Ok(&[][..]), floats)?,
+            material_index: material_index.as_ref().map_or(Ok(&[][..]), ints)?,
+            triangle_polygons: triangle_polygons.as_ref().map_or(Ok(&[][..]), ints)?,
+        };
+        let (uvs, colors) = (layers(&uvs)?, layers(&colors)?);
+        py.detach(|| self.lock().set_mesh(key, name, &arrays, &uvs, &colors)).map_err(|error| exception(&error))
+    }
+
+    /// Forgets the mesh `key`.
+    fn remove_mesh(&self, key: u64) {
+        self.lock().remove_mesh(key);
+    }
+
+    /// Takes in the bytes of a packed image file.
+    fn set_image_bytes(&self, name: &str, bytes: &[u8]) {
+        self.lock().set_image(name, ImageSource::Encoded(bytes.to_vec()));
+    }
+
+    /// Takes in pixels: float32, four per pixel, rows from the bottom; `linear` for linear values.
+    fn set_image_pixels(&self, name: &str, width: u32, height: u32, pixels: Floats<'_>, linear: bool) -> PyResult<()> {
+        let values = floats(&pixels)?.to_vec();
+        self.lock().set_image(name, ImageSource::Pixels { width, height, values, linear });
+        Ok(())
+    }
+
+    /// Takes in all placements: object indices (uint32) and matrices (float32, 16 per instance, by rows).
+    fn set_instances(&self, objects: PyReadonlyArray1<'_, u32>, matrices: Floats<'_>) -> PyResult<()> {
+        let objects = objects.as_slice().map_err(|_| contiguous())?;
+        self.lock().set_instances(objects, floats(&matrices)?).map_err(|error| exception(&error))
+    }
+}
+
+fn contiguous() -> PyErr {
+    PyValueError::new_err("arrays must be C-contiguous")
+}
+
+fn floats<'a>(array: &'a Floats<'_>) -> PyResult<&'a [f32]> {
+    array.as_slice().map_err(|_| contiguous())
+}
+
+fn ints<'a>(array: &'a Ints<'_>) -> PyResult<&'a [i32]> {
+    array.as_slice().map_err(|_| contiguous())
+}
+
+fn layers<'a>(layers: &'a [Layer<'_>]) -> PyResult<Vec<LayerArray<'a>>> {
+    layers.iter().map(|(name, values)| Ok(LayerArray { name, values: floats(values)? })).collect()
+}
