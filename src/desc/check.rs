@@ -1,6 +1,7 @@
 //! Holds a [`SceneDesc`] to its own rules, so that what follows need not.
 
 use super::SceneDesc;
+use super::graph::Op;
 use crate::error::{Error, Place, Result};
 
 /// Checks every index and length of `scene`.
@@ -18,6 +19,7 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         rule(mesh.uvs.iter().all(|a| attribute_fits(a, points, corners)), "wrong count of UVs")?;
         rule(mesh.tangents.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of tangents")?;
         rule(mesh.colors.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of colors")?;
+        rule(mesh.attributes.iter().all(|a| attribute_fits(&a.values, points, corners)), "wrong count of attributes")?;
         rule(mesh.material_slots.as_ref().is_none_or(|s| s.len() == mesh.triangles.len()), "wrong count of slots")?;
     }
     for instance in &scene.instances {
@@ -32,6 +34,14 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
     for material in &scene.materials {
         for texture in material.textures() {
             index(texture.texture, scene.textures.len(), &material.place, "texture")?;
+        }
+        for value in material.graph_values() {
+            index(value.index() as u32, material.graph.ops().len(), &material.place, "value of the graph")?;
+        }
+        for op in material.graph.ops() {
+            if let Op::Image { texture, .. } = op {
+                index(*texture, scene.textures.len(), &material.place, "texture of the graph")?;
+            }
         }
     }
     for image in &scene.images {

@@ -6,21 +6,29 @@
 use std::sync::Arc;
 
 use super::TextureRef;
+use super::graph::{Graph, ValueId};
 use crate::error::Place;
 
-/// A colour: `factor × texture.rgb`, linear.
+/// A colour: `factor × texture.rgb × graph.rgb`, linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorInput {
     /// Constant part.
     pub factor: [f64; 3],
     /// Texture part; `None` for white.
     pub texture: Option<TextureRef>,
+    /// Value of the material's graph; `None` for white.
+    pub graph: Option<ValueId>,
 }
 
 impl ColorInput {
     /// The same colour everywhere.
     pub const fn constant(factor: [f64; 3]) -> Self {
-        Self { factor, texture: None }
+        Self { factor, texture: None, graph: None }
+    }
+
+    /// What the material's graph says.
+    pub const fn graph(value: ValueId) -> Self {
+        Self { factor: [1.0; 3], texture: None, graph: Some(value) }
     }
 }
 
@@ -37,29 +45,58 @@ pub enum Channel {
     A,
 }
 
-/// A number: `factor × texture.channel`.
+/// A number: `factor × texture.channel × graph`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarInput {
     /// Constant part.
     pub factor: f64,
     /// Texture part and which channel of it; `None` for 1.
     pub texture: Option<(TextureRef, Channel)>,
+    /// Value of the material's graph, its first place; `None` for 1.
+    pub graph: Option<ValueId>,
 }
 
 impl ScalarInput {
     /// The same number everywhere.
     pub const fn constant(factor: f64) -> Self {
-        Self { factor, texture: None }
+        Self { factor, texture: None, graph: None }
+    }
+
+    /// What the material's graph says.
+    pub const fn graph(value: ValueId) -> Self {
+        Self { factor: 1.0, texture: None, graph: Some(value) }
     }
 }
 
-/// A tangent-space normal map, +y along the bitangent.
+/// Where a normal comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalInput {
-    /// The map.
-    pub texture: TextureRef,
-    /// Factor of its x and y.
-    pub scale: f64,
+pub enum NormalInput {
+    /// A tangent-space map, +y along the bitangent.
+    Map {
+        /// The map.
+        texture: TextureRef,
+        /// Factor of its x and y.
+        scale: f64,
+    },
+    /// Value of the material's graph: a normal in world space, on the side of whoever looks.
+    Graph(ValueId),
+}
+
+impl NormalInput {
+    /// The map, where it is one.
+    pub fn texture(&self) -> Option<TextureRef> {
+        match self {
+            Self::Map { texture, .. } => Some(*texture),
+            Self::Graph(_) => None,
+        }
+    }
+
+    fn value(&self) -> Option<ValueId> {
+        match self {
+            Self::Map { .. } => None,
+            Self::Graph(value) => Some(*value),
+        }
+    }
 }
 
 /// How opacity is read.
@@ -144,6 +181,8 @@ pub struct MaterialDesc {
     pub place: Place,
     /// Value of the material index pass.
     pub material_index: u32,
+    /// What the inputs name as their `graph`; empty for a material of constants and plain textures.
+    pub graph: Graph,
     /// Diffuse albedo of dielectrics, normal-incidence reflectance of metals.
     pub base_color: ColorInput,
     /// Alpha; `alpha_mode` says how it is read. Times the vertex colour's alpha.
@@ -197,6 +236,7 @@ impl Default for MaterialDesc {
             name: "default".into(),
             place: Place::default(),
             material_index: 0,
+            graph: Graph::default(),
             base_color: ColorInput::constant([0.8; 3]),
             alpha: ScalarInput::constant(1.0),
             alpha_mode: AlphaMode::Opaque,
@@ -223,11 +263,11 @@ impl Default for MaterialDesc {
 }
 
 impl MaterialDesc {
-    /// Every texture that the material uses, in no order.
+    /// Every texture that its inputs look up by themselves, in no order; those of the graph come on top.
     pub fn textures(&self) -> impl Iterator<Item = TextureRef> {
         let color = |input: &ColorInput| input.texture;
         let scalar = |input: &ScalarInput| input.texture.map(|(texture, _)| texture);
-        let normal = |input: Option<NormalInput>| input.map(|n| n.texture);
+        let normal = |input: Option<NormalInput>| input.and_then(|n| n.texture());
         [
             color(&self.base_color),
             scalar(&self.alpha),
@@ -245,6 +285,34 @@ impl MaterialDesc {
             self.iridescence.as_ref().and_then(|i| scalar(&i.weight)),
             self.iridescence.as_ref().and_then(|i| i.thickness_texture.map(|(texture, _)| texture)),
             self.anisotropy.as_ref().and_then(|a| a.texture),
+            color(&self.emission),
+            normal(self.normal),
+            self.occlusion.as_ref().and_then(scalar),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// Every value of the graph that an input names, in no order.
+    pub fn graph_values(&self) -> impl Iterator<Item = ValueId> {
+        let color = |input: &ColorInput| input.graph;
+        let scalar = |input: &ScalarInput| input.graph;
+        let normal = |input: Option<NormalInput>| input.and_then(|n| n.value());
+        [
+            color(&self.base_color),
+            scalar(&self.alpha),
+            scalar(&self.metallic),
+            scalar(&self.roughness),
+            scalar(&self.specular),
+            color(&self.specular_color),
+            scalar(&self.transmission),
+            self.volume.as_ref().and_then(|v| scalar(&v.thickness)),
+            self.coat.as_ref().and_then(|c| scalar(&c.weight)),
+            self.coat.as_ref().and_then(|c| scalar(&c.roughness)),
+            self.coat.as_ref().and_then(|c| normal(c.normal)),
+            self.sheen.as_ref().and_then(|s| color(&s.color)),
+            self.sheen.as_ref().and_then(|s| scalar(&s.roughness)),
+            self.iridescence.as_ref().and_then(|i| scalar(&i.weight)),
             color(&self.emission),
             normal(self.normal),
             self.occlusion.as_ref().and_then(scalar),

@@ -29,6 +29,15 @@ impl<T> Attribute<T> {
     }
 }
 
+/// Values on a mesh that graphs ask for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedAttribute {
+    /// Its name.
+    pub name: Arc<str>,
+    /// A value as graphs have it: a number in all four places, a linear color with alpha, or a vector.
+    pub values: Attribute<[f32; 4]>,
+}
+
 /// A triangle mesh in object space. Front faces wind counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshDesc {
@@ -48,6 +57,11 @@ pub struct MeshDesc {
     pub tangents: Option<Attribute<[f32; 4]>>,
     /// Vertex colours, linear, straight alpha; multiplied onto the base colour.
     pub colors: Option<Attribute<[f32; 4]>>,
+    /// Values that graphs ask for by name. A name that comes twice is the first one's.
+    pub attributes: Vec<NamedAttribute>,
+    /// The box that is 0 to 1 in generated coordinates, its least and its largest corner; `None` for that
+    /// of the points.
+    pub generated: Option<[[f64; 3]; 2]>,
     /// Index into the instance's material list for each triangle; `None` for 0 everywhere.
     pub material_slots: Option<Vec<u16>>,
     /// Points at other times of the shutter, in the order of time; empty for a mesh that keeps its
@@ -84,10 +98,29 @@ pub struct InstanceDesc {
     pub materials: Vec<Option<u32>>,
     /// Value of the object index pass.
     pub object_index: u32,
+    /// What graphs ask the object for.
+    pub info: ObjectInfo,
     /// Which rays see it.
     pub visibility: Visibility,
     /// Rules of the light that it emits, where it emits any.
     pub links: LightLinks,
+}
+
+/// What graphs ask an object for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectInfo {
+    /// Its color with alpha.
+    pub color: [f64; 4],
+    /// A number of 0 to 1 that is its own.
+    pub random: f64,
+    /// Named values, which those of the mesh come before.
+    pub attributes: Vec<(Arc<str>, [f64; 4])>,
+}
+
+impl Default for ObjectInfo {
+    fn default() -> Self {
+        Self { color: [1.0; 4], random: 0.0, attributes: Vec::new() }
+    }
 }
 
 /// Which kinds of ray see an object.

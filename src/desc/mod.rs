@@ -1,4 +1,5 @@
-//! What an artist wrote: plain data, `f64` where it is authored so, and no behaviour.
+//! What an artist wrote: plain data, `f64` where it is authored so, and no behaviour but for what the
+//! functions of shader graphs compute ([`graph`]), which doors fold constants with.
 //!
 //! Every front door (glTF, USD, Blender) fills a [`SceneDesc`] and nothing else; `scene/prepare.rs`
 //! turns it into what is traced. The world is right-handed with **y up**, in metres, radiance in
@@ -7,6 +8,7 @@
 
 mod camera;
 mod check;
+pub mod graph;
 mod image;
 mod light;
 mod material;
@@ -24,7 +26,7 @@ pub use material::{
     AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
     SheenDesc, VolumeDesc,
 };
-pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, Visibility};
+pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, Visibility};
 pub use render::RenderDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
