@@ -56,9 +56,11 @@ impl Scene {
 
     /// Takes in the mesh `key`. Arrays are C-contiguous, float32 and int32: positions (n, 3),
     /// corner_verts (c), triangles (t, 3) of corners, normals (c, 3) or (n, 3), material_index per
-    /// polygon with triangle_polygons (t), uvs [(name, (c, 2))], colors [(name, (c or n, 4))].
+    /// polygon with triangle_polygons (t), uvs [(name, (c, 2))], colors [(name, (c or n, 4))],
+    /// texture_space (middle, half of the size).
     #[pyo3(signature = (key, name, *, positions, corner_verts, triangles, normals=None, material_index=None,
-        triangle_polygons=None, uvs=Vec::new(), colors=Vec::new()))]
+        triangle_polygons=None, uvs=Vec::new(), colors=Vec::new(),
+        texture_space=None))]
     fn set_mesh(
         &self,
         py: Python<'_>,
@@ -72,6 +74,7 @@ impl Scene {
         triangle_polygons: Option<Ints<'_>>,
         uvs: Vec<Layer<'_>>,
         colors: Vec<Layer<'_>>,
+        texture_space: Option<[[f64; 3]; 2]>,
     ) -> PyResult<()> {
         let arrays = MeshArrays {
             positions: floats(&positions)?,
@@ -80,6 +83,7 @@ impl Scene {
             normals: normals.as_ref().map_or(Ok(&[][..]), floats)?,
             material_index: material_index.as_ref().map_or(Ok(&[][..]), ints)?,
             triangle_polygons: triangle_polygons.as_ref().map_or(Ok(&[][..]), ints)?,
+            texture_space,
         };
         let (uvs, colors) = (layers(&uvs)?, layers(&colors)?);
         py.detach(|| self.lock().set_mesh(key, name, &arrays, &uvs, &colors)).map_err(|error| exception(&error))

@@ -59,6 +59,11 @@ impl Graph {
         self.apply(Function::Dot(3), &[vector, weights])
     }
 
+    /// Rows of a 3×4 matrix times `(x, y, z, 1)`.
+    pub fn affine(&mut self, rows: [[f64; 4]; 3], vector: ValueId) -> ValueId {
+        self.apply(Function::Affine(Box::new(rows)), &[vector])
+    }
+
     /// A vector of this world (y up) as one of a world with z up, or back.
     pub fn turned(&mut self, vector: ValueId, to_z_up: bool) -> ValueId {
         let sign = if to_z_up { 1.0 } else { -1.0 };

@@ -85,6 +85,11 @@ impl<'a> Images<'a> {
         }) as u32)
     }
 
+    /// The image of a texture that was asked for.
+    pub fn image_of(&self, texture: u32) -> u32 {
+        self.textures[texture as usize].image
+    }
+
     /// All images and textures that were asked for. One that can't be read is told, and is magenta as
     /// in Cycles.
     pub fn finish(self, warnings: &mut Warnings) -> (Vec<ImageDesc>, Vec<TextureDesc>) {

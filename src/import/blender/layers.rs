@@ -22,7 +22,8 @@ impl UvSets {
     pub fn new<'a>(names: impl IntoIterator<Item = String>, meshes: impl Iterator<Item = &'a NamedMesh> + Clone) -> Self {
         let mut sets = Self::default();
         for name in names {
-            if sets.sets.contains_key(&name) || name.is_empty() {
+            let has = |mesh: &NamedMesh| mesh.uv_names.iter().any(|known| **known == *name);
+            if sets.sets.contains_key(&name) || !meshes.clone().any(has) {
                 continue;
             }
             let is_first = |mesh: &NamedMesh| mesh.uv_names.first().is_none_or(|first| **first == *name);

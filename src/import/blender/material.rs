@@ -2,17 +2,30 @@
 
 use super::document::{Document, MaterialData};
 use super::image::Images;
+use super::layers::UvSets;
 use super::nodes;
 use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc};
 use crate::error::{Place, Warnings};
 
 /// Adds every material of `document`, in its order.
-pub fn materials(document: &Document, images: &mut Images<'_>, desc: &mut SceneDesc, warnings: &mut Warnings) {
+pub fn materials(
+    document: &Document,
+    images: &mut Images<'_>,
+    uv_sets: &UvSets,
+    desc: &mut SceneDesc,
+    warnings: &mut Warnings,
+) {
     let place = desc.place.clone();
-    desc.materials = document.materials.iter().map(|data| material(data, images, &place, warnings)).collect();
+    desc.materials = document.materials.iter().map(|data| material(data, images, uv_sets, &place, warnings)).collect();
 }
 
-fn material(data: &MaterialData, images: &mut Images<'_>, place: &Place, warnings: &mut Warnings) -> MaterialDesc {
+fn material(
+    data: &MaterialData,
+    images: &mut Images<'_>,
+    uv_sets: &UvSets,
+    place: &Place,
+    warnings: &mut Warnings,
+) -> MaterialDesc {
     let base = MaterialDesc {
         name: data.name.as_str().into(),
         place: place.at(&data.name),
@@ -20,7 +33,7 @@ fn material(data: &MaterialData, images: &mut Images<'_>, place: &Place, warning
         ..MaterialDesc::default()
     };
     match &data.nodes {
-        Some(tree) => nodes::surface(tree, base, images, warnings),
+        Some(tree) => nodes::surface(tree, base, images, uv_sets, warnings),
         None => {
             let [r, g, b, _] = data.diffuse_color;
             let plain = ScalarInput::constant;

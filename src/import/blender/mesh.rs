@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::desc::{Attribute, MeshDesc};
+use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// The arrays of an evaluated mesh, as `foreach_get` fills them.
@@ -23,6 +23,9 @@ pub struct MeshArrays<'a> {
     pub material_index: &'a [i32],
     /// `loop_triangle_polygons`: polygon of each triangle; needed with `material_index`.
     pub triangle_polygons: &'a [i32],
+    /// `texspace_location` and `texspace_size`: the middle and half the size of the box of generated
+    /// coordinates; `None` for that of the vertices.
+    pub texture_space: Option<[[f64; 3]; 2]>,
 }
 
 /// A layer of values: its name, how many numbers a value has, and the numbers, one value per vertex
@@ -35,15 +38,13 @@ pub struct LayerArray<'a> {
     pub values: &'a [f32],
 }
 
-/// A mesh and the names of its layers.
+/// A mesh and the names of its UV maps.
 #[derive(Clone, Debug)]
 pub struct NamedMesh {
     /// The mesh.
     pub mesh: MeshDesc,
     /// Names of its UV maps, the one to render with first.
     pub uv_names: Vec<Arc<str>>,
-    /// Names of its colour attributes, the one to render with first.
-    pub color_names: Vec<Arc<str>>,
 }
 
 /// The mesh of `arrays`, with UV maps and colour attributes.
@@ -80,15 +81,24 @@ pub fn mesh(
     let layer = Layers { points, corners, corners_of, name, place };
 
     let normals = if arrays.normals.is_empty() { None } else { layer.fit("normals", arrays.normals, warnings) };
-    let names = |layers: &[LayerArray<'_>]| layers.iter().map(|layer| layer.name.into()).collect();
     let mut uv_sets = Vec::with_capacity(uvs.len());
     for uv in uvs {
         // Blender's v grows upwards.
         let values = layer.fit::<2>(&format!("UV map \"{}\"", uv.name), uv.values, warnings);
         uv_sets.push(flipped(values.unwrap_or_else(|| Attribute::Point(vec![[0.0; 2]; points]))));
     }
-    let color = colors.first().and_then(|color| {
-        layer.fit::<4>(&format!("colour attribute \"{}\"", color.name), color.values, warnings)
+    let mut attributes = Vec::new();
+    for color in colors {
+        let Some(values) = layer.fit(&format!("colour attribute \"{}\"", color.name), color.values, warnings) else { continue };
+        if attributes.is_empty() {
+            // The one to render with is also found without a name.
+            attributes.push(NamedAttribute { name: "".into(), values: values.clone() });
+        }
+        attributes.push(NamedAttribute { name: color.name.into(), values });
+    }
+    let generated = arrays.texture_space.map(|[middle, half]| {
+        let corner = |sign: f64| std::array::from_fn(|i| middle[i] + sign * half[i]);
+        [corner(-1.0), corner(1.0)]
     });
     let material_slots = slots(arrays, kept.as_ref().map(|(_, kept)| kept.as_slice()), &broken)?;
     let mesh = MeshDesc {
@@ -99,11 +109,13 @@ pub fn mesh(
         normals,
         uvs: uv_sets,
         tangents: None,
-        colors: color,
+        colors: None,
+        attributes,
+        generated,
         material_slots,
         motion: Vec::new(),
     };
-    Ok(NamedMesh { mesh, uv_names: names(uvs), color_names: names(colors) })
+    Ok(NamedMesh { mesh, uv_names: uvs.iter().map(|layer| layer.name.into()).collect() })
 }
 
 /// Corners of the triangles whose vertices are all finite, and which triangles those are; `None`

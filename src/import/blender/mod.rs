@@ -8,6 +8,7 @@
 mod camera;
 mod document;
 mod image;
+mod layers;
 mod light;
 mod material;
 mod mesh;

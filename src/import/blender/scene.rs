@@ -5,9 +5,12 @@ use std::collections::HashMap;
 use super::document::Document;
 use super::image::{ImageSource, Images};
 use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
+use super::nodes::TreeData;
 use super::transform::affine_of_floats;
+use super::layers::UvSets;
+use super::light::LampShader;
 use super::{camera, light, material, nodes, world};
-use crate::desc::{InstanceDesc, LightLinks, SceneDesc};
+use crate::desc::{InstanceDesc, LightLinks, MeshDesc, SceneDesc};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -98,15 +101,17 @@ impl BlenderScene {
             desc.render.camera = Some(data.name.as_str().into());
         }
         let mut images = Images::new(&document.images, &self.images, &place);
-        let of_object = self.add_instances(&mut desc, warnings);
-        material::materials(document, &mut images, &mut desc, warnings);
+        let names = document.materials.iter().filter_map(|m| m.nodes.as_ref()).flat_map(TreeData::uv_map_names);
+        let uv_sets = UvSets::new(names, self.meshes.values());
+        let of_object = self.add_instances(&uv_sets, &mut desc, warnings);
+        material::materials(document, &mut images, &uv_sets, &mut desc, warnings);
         self.add_lights(&of_object, &mut desc, &mut images, warnings);
         (desc.images, desc.textures) = images.finish(warnings);
         Ok(desc)
     }
 
     /// Adds what is placed, and the meshes of it; returns the instances of each object.
-    fn add_instances(&self, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
+    fn add_instances(&self, uv_sets: &UvSets, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
         let document = &self.document;
         let mut index_of: HashMap<u64, u32> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
@@ -119,7 +124,7 @@ impl BlenderScene {
             let Some(mesh) = self.meshes.get(&data.mesh) else { continue };
             let index = *index_of.entry(data.mesh).or_insert_with(|| {
                 warnings.extend(self.of_meshes.get(&data.mesh).cloned().unwrap_or_default());
-                desc.meshes.push(mesh.mesh.clone());
+                desc.meshes.push(MeshDesc { uvs: uv_sets.of(mesh), ..mesh.mesh.clone() });
                 desc.meshes.len() as u32 - 1
             });
             of_object[*object as usize].push(desc.instances.len() as u32);
@@ -160,7 +165,10 @@ impl BlenderScene {
     ) {
         let document = &self.document;
         for data in &document.lights {
-            let shader = nodes::lamp(data, images, &desc.place, warnings);
+            let shader = match &data.nodes {
+                Some(tree) => nodes::lamp(tree, images, desc.place.at(&data.name), warnings),
+                None => LampShader::default(),
+            };
             let Some(mut light) = light::light(data, &shader, &desc.place, warnings) else { continue };
             let own = light::links(&data.lightgroup, data.receivers.as_ref(), data.blockers.as_ref(), of_object);
             light.links = LightLinks { cast_shadow: light.links.cast_shadow, ..own };

@@ -28,7 +28,7 @@ pub fn dome(
 ) -> Option<LightDesc> {
     let place = place.at(&data.name);
     let shader = match &data.nodes {
-        Some(tree) => nodes::world(tree, images, &place, warnings)?,
+        Some(tree) => nodes::world(tree, images, place.clone(), warnings)?,
         None => WorldShader { radiance: data.color, image: None, turn: DMat3::IDENTITY },
     };
     if shader.radiance == [0.0; 3] {

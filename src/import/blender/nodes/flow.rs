@@ -7,6 +7,7 @@ use super::super::image::Images;
 use super::super::layers::UvSets;
 use super::tree::{NodeData, SocketData, TreeData};
 use super::values;
+use crate::desc::DecayDesc;
 use crate::desc::graph::{Graph, ValueId};
 use crate::error::{Place, Warnings};
 
@@ -50,6 +51,8 @@ pub struct Flow<'a, 'i> {
     pub uv_sets: &'a UvSets,
     /// The material, world or lamp.
     pub place: Place,
+    /// What a Light Falloff node says.
+    pub falloff: Option<DecayDesc>,
     warnings: &'a mut Warnings,
     scopes: Vec<Scope<'a>>,
     entered: HashMap<(usize, usize), usize>,
@@ -72,6 +75,7 @@ impl<'a, 'i> Flow<'a, 'i> {
             images,
             uv_sets,
             place,
+            falloff: None,
             warnings,
             scopes: vec![Scope { tree, group: None }],
             entered: HashMap::new(),
@@ -165,6 +169,12 @@ impl<'a, 'i> Flow<'a, 'i> {
     /// True where something is linked to the input.
     pub fn is_linked(&mut self, at: At<'a>, name: &str) -> bool {
         at.node.input(name).is_some_and(|input| matches!(self.source(at, input), Source::Output(..)))
+    }
+
+    /// True where something is linked to the output.
+    pub fn is_used(&self, at: At<'a>, output: usize) -> bool {
+        let from = Some([at.index, output]);
+        self.scopes[at.scope].tree.nodes.iter().flat_map(|node| &node.inputs).any(|input| input.link == from)
     }
 
     /// The value of an input, as its socket's type has it; 0 for a socket that this version of the node

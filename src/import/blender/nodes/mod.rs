@@ -1,33 +1,54 @@
-//! Node trees: what the add-on sends of them, and what they compute.
+//! Node trees: what the add-on sends of them (`tree.rs`), and what they compute.
+//!
+//! `flow.rs` walks from the output back through links, groups, reroutes and muted nodes and builds the
+//! engine's graph; each value node is a line in the table of `values.rs` and a function in the file of its
+//! menu. Shaders become a weighted sum (`closure.rs`), which is a surface (`surface.rs`), a world or a lamp.
 
+mod closure;
+mod color;
+mod flow;
+mod input;
+mod lamp;
+mod math;
+mod procedural;
+mod surface;
+mod tables;
+mod texture;
 mod tree;
+mod values;
+mod vector;
+mod world;
 
 pub use tree::{NodeData, SocketData, TreeData, Value};
 
-use super::document::LightData;
 use super::image::Images;
+use super::layers::UvSets;
 use super::light::LampShader;
 use super::world::WorldShader;
 use crate::desc::MaterialDesc;
 use crate::error::{Place, Warnings};
-use crate::math::DMat3;
+use flow::Flow;
 
 /// What the nodes of a lamp emit.
-pub fn lamp(_data: &LightData, _images: &mut Images<'_>, _place: &Place, _warnings: &mut Warnings) -> LampShader {
-    LampShader::default()
+pub fn lamp(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> LampShader {
+    let uv_sets = UvSets::default();
+    lamp::lamp(&mut Flow::new(tree, images, &uv_sets, place, warnings))
 }
 
 /// What the nodes of a world emit; `None` for nothing.
-pub fn world(_tree: &TreeData, _images: &mut Images<'_>, _place: &Place, _warnings: &mut Warnings) -> Option<WorldShader> {
-    Some(WorldShader { radiance: [0.05; 3], image: None, turn: DMat3::IDENTITY })
+pub fn world(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> Option<WorldShader> {
+    let uv_sets = UvSets::default();
+    world::world(&mut Flow::new(tree, images, &uv_sets, place, warnings))
 }
 
 /// `base` with what the nodes of a material make of its surface.
 pub fn surface(
-    _tree: &TreeData,
+    tree: &TreeData,
     base: MaterialDesc,
-    _images: &mut Images<'_>,
-    _warnings: &mut Warnings,
+    images: &mut Images<'_>,
+    uv_sets: &UvSets,
+    warnings: &mut Warnings,
 ) -> MaterialDesc {
-    base
+    let place = base.place.clone();
+    surface::surface(&mut Flow::new(tree, images, uv_sets, place, warnings), base)
 }

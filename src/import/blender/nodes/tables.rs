@@ -22,7 +22,7 @@ struct CurvesData {
 pub fn ramp(node: &NodeData) -> Option<Table> {
     let data: RampData = serde_json::from_value(node.properties.get("color_ramp")?.clone()).ok()?;
     let curves = if data.constant { Curves::Stepped } else { Curves::Clamped };
-    (!data.table.is_empty()).then_some(Table { start: 0.0, end: 1.0, rows: data.table, curves })
+    (!data.table.is_empty()).then_some(Table { min: 0.0, max: 1.0, rows: data.table, curves })
 }
 
 /// Curves of a node, a column each; a single one stands in all places.
@@ -39,5 +39,5 @@ pub fn curves(node: &NodeData, which: &[usize]) -> Option<Table> {
     };
     let rows: Vec<Value> = (0..first.len()).map(row).collect::<Option<_>>()?;
     let curves = if data.extend { Curves::Extrapolated } else { Curves::Clamped };
-    (!rows.is_empty()).then_some(Table { start: data.range[0], end: data.range[1], rows, curves })
+    (!rows.is_empty()).then_some(Table { min: data.range[0], max: data.range[1], rows, curves })
 }

@@ -74,6 +74,25 @@ pub enum Value {
     Nothing,
 }
 
+impl TreeData {
+    /// Names of all UV maps that the tree or a group in it may mean.
+    pub fn uv_map_names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for node in &self.nodes {
+            let name = match node.r#type.as_str() {
+                "ShaderNodeUVMap" | "ShaderNodeNormalMap" | "ShaderNodeTangent" => node.text("uv_map"),
+                "ShaderNodeAttribute" => node.text("attribute_name"),
+                _ => "",
+            };
+            if !name.is_empty() {
+                names.push(name.to_owned());
+            }
+            names.extend(node.tree.iter().flat_map(|tree| tree.uv_map_names()));
+        }
+        names
+    }
+}
+
 impl NodeData {
     /// Index of the input of this identifier, or of this name.
     pub fn input(&self, name: &str) -> Option<usize> {

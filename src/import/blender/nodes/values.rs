@@ -1,7 +1,7 @@
 //! The table of nodes that make values: `bl_idname` and what its outputs are.
 
 use super::flow::{At, Flow};
-use super::{color, input, math, procedural, texture, vector};
+use super::{color, input, lamp, math, procedural, texture, vector};
 use crate::desc::graph::ValueId;
 
 /// What the output of this identifier of a node is.
@@ -22,6 +22,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeCameraData", input::camera_data),
     ("ShaderNodeTangent", input::tangent),
     ("ShaderNodeFresnel", input::fresnel),
+    ("ShaderNodeLightFalloff", lamp::falloff),
     ("ShaderNodeLayerWeight", input::layer_weight),
     ("ShaderNodeMath", math::math),
     ("ShaderNodeVectorMath", math::vector_math),

@@ -1,0 +1,54 @@
+//! Lamps: emission that is the same in all directions, and how it falls off.
+
+use super::closure;
+use super::flow::{At, Flow};
+use super::super::light::LampShader;
+use crate::desc::DecayLaw;
+use crate::desc::graph::ValueId;
+
+/// What the nodes of a lamp emit. What depends on more than numbers is told; the lamp's own color then
+/// stands for it.
+pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
+    let black = LampShader { factor: [0.0; 3], ..LampShader::default() };
+    let Some(output) = flow.output_node("ShaderNodeOutputLight") else { return black };
+    let Some(surface) = output.node.input("Surface") else { return black };
+    let mut factor = [0.0; 3];
+    for part in closure::parts(flow, output, surface) {
+        if part.at.node.r#type != "ShaderNodeEmission" {
+            let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
+            flow.warn(format!("the shader \"{name}\" ({kind}) of a lamp is not supported; it is left out"));
+            continue;
+        }
+        let emitted = emission(flow, part.at, part.weight);
+        let Some(value) = flow.graph.known(emitted) else {
+            flow.warn("the lamp's nodes vary over it, which is not supported; they count as 1");
+            return LampShader::default();
+        };
+        (0..3).for_each(|i| factor[i] += value[i]);
+    }
+    LampShader { factor, decay: flow.falloff.unwrap_or_default() }
+}
+
+/// Color × strength × weight of an Emission or Background node.
+pub fn emission<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, weight: ValueId) -> ValueId {
+    let (color, strength) = (flow.input(at, "Color"), flow.input(at, "Strength"));
+    let emitted = flow.graph.multiply(color, strength);
+    flow.graph.multiply(emitted, weight)
+}
+
+/// Light Falloff: of a lamp, its decay; the value is the strength alone.
+pub fn falloff<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let (strength, smooth) = (flow.input(at, "Strength"), flow.input(at, "Smooth"));
+    let law = match output {
+        "Linear" => DecayLaw::Linear,
+        "Constant" => DecayLaw::Constant,
+        _ => DecayLaw::Quadratic,
+    };
+    let smooth = flow.graph.known(smooth).map_or(0.0, |smooth| smooth[0].max(0.0));
+    let decay = crate::desc::DecayDesc { law, smooth, ..Default::default() };
+    if flow.falloff.is_some_and(|other| other != decay) {
+        flow.warn("the lamp has several kinds of falloff; the last one is taken");
+    }
+    flow.falloff = Some(decay);
+    strength
+}

@@ -1,0 +1,96 @@
+//! Image textures.
+
+use super::flow::{At, Flow};
+use super::super::image::Look;
+use crate::desc::graph::{Function, Leaf, Math, ValueId};
+use crate::desc::{Filter, Wrap};
+
+/// Image Texture.
+pub fn image<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let coordinates = flow.linked_or(at, "Vector", |flow| flow.graph.uv_upwards(0));
+    let texel = match at.node.text("projection") {
+        "BOX" => {
+            let normal = flow.graph.leaf(Leaf::ObjectNormal);
+            let blend = at.node.number("projection_blend").unwrap_or(0.0);
+            texture(flow, at, None).map(|texture| flow.graph.box_image(texture, coordinates, normal, blend))
+        }
+        round @ ("SPHERE" | "TUBE") => {
+            // From 0 to 1 to −1 to 1.
+            let rows = [[2.0, 0.0, 0.0, -1.0], [0.0, 2.0, 0.0, -1.0], [0.0, 0.0, 2.0, -1.0]];
+            let centered = flow.graph.affine(rows, coordinates);
+            let function = if round == "TUBE" { Function::TubeMap } else { Function::SphereMap };
+            let uv = flow.graph.apply(function, &[centered]);
+            lookup(flow, at, uv)
+        }
+        _ => lookup(flow, at, coordinates),
+    };
+    of_texel(flow, at, texel, output)
+}
+
+/// Environment Texture; directions where nothing is linked.
+pub fn environment<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let direction = flow.linked_or(at, "Vector", |flow| flow.graph.leaf(Leaf::Position));
+    let ball = at.node.text("projection") == "MIRROR_BALL";
+    let function = if ball { Function::MirrorBall } else { Function::Equirectangular };
+    let uv = flow.graph.apply(function, &[direction]);
+    let texel = lookup(flow, at, uv);
+    of_texel(flow, at, texel, output)
+}
+
+/// The texels at coordinates with v upwards; `None` for a node without an image.
+fn lookup<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, uv: ValueId) -> Option<ValueId> {
+    let tiles = flow.images.data(at.node.text("image")).map(|data| data.tiles.clone()).unwrap_or_default();
+    if tiles.is_empty() {
+        let texture = texture(flow, at, None)?;
+        let uv = flow.graph.upside_down(uv);
+        return Some(flow.graph.image(texture, uv));
+    }
+    // Tile 1001 + i + 10 j covers the unit square at (i, j).
+    let floor = flow.graph.math(Math::Floor, &[uv]);
+    let within = flow.graph.subtract(uv, floor);
+    let within = flow.graph.upside_down(within);
+    let (i, j) = (flow.graph.place(floor, 0), flow.graph.place(floor, 1));
+    let rows = flow.graph.scale(j, 10.0);
+    let here = flow.graph.add(i, rows);
+    let mut value = flow.graph.number(0.0);
+    for tile in tiles {
+        let Some(texture) = texture(flow, at, Some(tile)) else { continue };
+        let texel = flow.graph.image(texture, within);
+        let number = flow.graph.number(f64::from(tile) - 1001.0);
+        value = flow.graph.apply(Function::IfEqual, &[here, number, texel, value]);
+    }
+    Some(value)
+}
+
+/// The texture of a node's image, or of a tile of it.
+fn texture<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, tile: Option<u32>) -> Option<u32> {
+    let wrap = match at.node.text("extension") {
+        "EXTEND" => Wrap::Clamp,
+        "CLIP" => Wrap::Black,
+        "MIRROR" => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    let filter = if at.node.text("interpolation") == "Closest" { Filter::Nearest } else { Filter::Linear };
+    flow.images.texture(at.node.text("image"), tile, Look { wrap, filter })
+}
+
+/// The output of an image node.
+fn of_texel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, texel: Option<ValueId>, output: &str) -> ValueId {
+    let Some(texel) = texel else {
+        // Magenta, as Cycles shows a node without an image.
+        return if output == "Alpha" { flow.graph.number(1.0) } else { flow.graph.constant([1.0, 0.0, 1.0, 1.0]) };
+    };
+    let data = flow.images.data(at.node.text("image"));
+    let (alpha_mode, is_data) = data.map_or(("", false), |data| (data.alpha_mode.as_str(), data.colorspace == "Non-Color"));
+    if output == "Alpha" {
+        return if alpha_mode == "NONE" { flow.graph.number(1.0) } else { flow.graph.place(texel, 3) };
+    }
+    // Cycles keeps colors multiplied by alpha, and divides again only where the alpha is used, too.
+    let associated = !is_data && !matches!(alpha_mode, "NONE" | "CHANNEL_PACKED");
+    let alpha_is_used = at.node.output("Alpha").is_none_or(|alpha| flow.is_used(at, alpha));
+    if associated && !alpha_is_used {
+        let alpha = flow.graph.place(texel, 3);
+        return flow.graph.multiply(texel, alpha);
+    }
+    texel
+}

@@ -1,0 +1,36 @@
+"""Runs in a headless Blender (the bpy package): the extension enabled, a job done, the answer as JSON.
+
+    python harness.py JOB ANSWER.json [ARGUMENT...]
+
+JOB is a function of jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
+"""
+
+import json
+import sys
+import traceback
+
+import addon_utils
+import bpy
+
+EXTENSION = "bl_ext.user_default.penumbra"
+
+
+def main():
+    job, target, *arguments = sys.argv[1:]
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon_utils.enable(EXTENSION)
+    import jobs
+
+    answer = {}
+    try:
+        answer["result"] = getattr(jobs, job)(*arguments)
+    except Exception as error:
+        answer["error"] = f"{type(error).__name__}: {error}"
+        answer["traceback"] = traceback.format_exc()
+    with open(target, "w") as file:
+        json.dump(answer, file)
+    # Blender 4.x does not survive an engine that is registered at exit.
+    addon_utils.disable(EXTENSION)
+
+
+main()

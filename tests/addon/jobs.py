@@ -1,0 +1,95 @@
+"""What the tests let Blender do; each job returns plain data."""
+
+import os
+import time
+
+import bpy
+import numpy as np
+
+
+def _scene(size=(64, 48), spp=4):
+    """An empty scene with a camera that looks down at the origin."""
+    scene = bpy.context.scene
+    scene.render.engine = "PENUMBRA"
+    scene.render.resolution_x, scene.render.resolution_y = size
+    scene.render.resolution_percentage = 100
+    scene.penumbra.spp = spp
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (0, -6, 3)
+    camera.rotation_euler = (1.107, 0, 0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    if scene.world is None:
+        scene.world = bpy.data.worlds.new("World")
+    return scene
+
+
+def _add(name, data, **properties):
+    obj = bpy.data.objects.new(name, data)
+    for key, value in properties.items():
+        setattr(obj, key, value)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def _lamp(name, kind, **properties):
+    light = bpy.data.lights.new(name, kind)
+    for key, value in properties.items():
+        setattr(light, key, value)
+    return light
+
+
+def _room():
+    """A floor, a cube and a lamp."""
+    bpy.ops.mesh.primitive_plane_add(size=10)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 0.5))
+    _add("Area", _lamp("Area", "AREA", energy=200.0, size=1.0), location=(1.5, -1.0, 3.0))
+
+
+def _render(path, view_layer_passes=()):
+    """Renders to a multi-layer EXR."""
+    scene = bpy.context.scene
+    for name in view_layer_passes:
+        setattr(scene.view_layers[0], name, True)
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "32"
+    scene.render.filepath = path
+    bpy.ops.render.render(write_still=True)
+
+
+def f12(folder):
+    """One picture of a lit cube with every pass; returns the path."""
+    _scene(spp=16)
+    _room()
+    layer = bpy.context.view_layer
+    for name in dir(layer):
+        if name.startswith("use_pass_") and isinstance(getattr(layer, name), bool):
+            setattr(layer, name, True)
+    for name in layer.penumbra.__annotations__:
+        setattr(layer.penumbra, name, True)
+    path = os.path.join(folder, "f12.exr")
+    _render(path)
+    return path
+
+
+def mesh_time(count):
+    """Seconds that a mesh of about a million triangles takes to cross, and its triangles."""
+    import penumbra
+    from bl_ext.user_default.penumbra.export import mesh
+
+    n = int(count)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=n, y_subdivisions=n, size=2)
+    obj = bpy.context.object
+    obj.data.polygons.foreach_set("use_smooth", np.ones(len(obj.data.polygons), bool))
+    obj.data.update()
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    scene = penumbra.Scene()
+    times = []
+    for _ in range(3):
+        start = time.perf_counter()
+        mesh.hand_over(scene, 1, evaluated.data)
+        times.append(time.perf_counter() - start)
+    return [min(times), len(evaluated.data.loop_triangles)]
