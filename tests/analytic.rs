@@ -393,7 +393,7 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
         let floor = builder.lambert(0.8);
         let sheet = builder.material(MaterialDesc {
             specular: ScalarInput::constant(0.0),
-            alpha: ScalarInput { factor: 1.0, texture: Some((texture, Channel::A)) },
+            alpha: ScalarInput::textured(1.0, Some((texture, Channel::A))),
             alpha_mode: AlphaMode::Mask { cutoff },
             ..MaterialDesc::default()
         });

@@ -56,7 +56,7 @@ fn square(open: Open) -> Builder {
     let (wrap_u, wrap_v) = (Wrap::Clamp, Wrap::Clamp);
     builder.desc.textures.push(TextureDesc { place: Default::default(), image: 0, wrap_u, wrap_v, filter });
     let texture = TextureRef { texture: 0, uv_set: 0, transform: TextureTransform::IDENTITY };
-    let textured = ScalarInput { factor: 1.0, texture: Some((texture, Channel::A)) };
+    let textured = ScalarInput::textured(1.0, Some((texture, Channel::A)));
     let (alpha, alpha_mode) = match open {
         Open::Not => (ScalarInput::constant(1.0), AlphaMode::Opaque),
         Open::Blend(alpha) => (ScalarInput::constant(alpha), AlphaMode::Blend),

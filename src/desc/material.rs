@@ -23,7 +23,12 @@ pub struct ColorInput {
 impl ColorInput {
     /// The same colour everywhere.
     pub const fn constant(factor: [f64; 3]) -> Self {
-        Self { factor, texture: None, graph: None }
+        Self::textured(factor, None)
+    }
+
+    /// `factor × texture`.
+    pub const fn textured(factor: [f64; 3], texture: Option<TextureRef>) -> Self {
+        Self { factor, texture, graph: None }
     }
 
     /// What the material's graph says.
@@ -59,7 +64,12 @@ pub struct ScalarInput {
 impl ScalarInput {
     /// The same number everywhere.
     pub const fn constant(factor: f64) -> Self {
-        Self { factor, texture: None, graph: None }
+        Self::textured(factor, None)
+    }
+
+    /// `factor × texture`.
+    pub const fn textured(factor: f64, texture: Option<(TextureRef, Channel)>) -> Self {
+        Self { factor, texture, graph: None }
     }
 
     /// What the material's graph says.

@@ -71,7 +71,7 @@ pub fn framing_camera(scene: &SceneDesc, aspect: f64) -> CameraDesc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::desc::{InstanceDesc, LightLinks, MeshDesc, Visibility};
+    use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, Visibility};
 
     #[test]
     fn every_corner_is_in_the_picture() {
@@ -89,6 +89,7 @@ mod tests {
             motion: Vec::new(),
             materials: vec![],
             object_index: 0,
+            info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: LightLinks::default(),
         };

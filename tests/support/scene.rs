@@ -2,7 +2,7 @@
 
 use penumbra::desc::{
     Attribute, CameraDesc, ColorInput, InstanceDesc, LightDesc, LightKind, LightLinks, MaterialDesc, MeshDesc,
-    ProjectionDesc, ScalarInput, SceneDesc, Visibility,
+    ObjectInfo, ProjectionDesc, ScalarInput, SceneDesc, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::film::{PassSet, Picture};
@@ -54,6 +54,7 @@ impl Builder {
             motion: Vec::new(),
             materials: vec![Some(material)],
             object_index: self.desc.instances.len() as u32 + 1,
+            info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: LightLinks::default(),
         });

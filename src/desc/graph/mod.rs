@@ -22,7 +22,7 @@ mod function;
 mod leaf;
 mod op;
 
-pub use function::{Blend, Curves, Function, Mapping, Math, Range, Ramp, RampKind, Table};
+pub use function::{Blend, Curves, Function, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
 pub use op::{
     Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Space, Voronoi, VoronoiFeature, Wave,

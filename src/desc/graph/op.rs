@@ -265,9 +265,7 @@ impl Op {
             Self::Image { uv, .. } => (&mut [], [Some(uv), None, None, None]),
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None, None, None, None]),
             Self::Transform { value, .. } => (&mut [], [Some(value), None, None, None]),
-            Self::Bump(b) => {
-                (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some))
-            }
+            Self::Bump(b) => (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some)),
         };
         list.iter_mut().chain(few.into_iter().flatten())
     }

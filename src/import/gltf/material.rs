@@ -52,18 +52,16 @@ impl Converter<'_, '_> {
             },
             double_sided: json.double_sided,
             // Bad numbers stay: they are mended and told where the light is prepared.
-            emission: ColorInput {
-                factor: json.emissive_factor,
-                texture: self.textures.get(json.emissive_texture.as_ref(), ColorSpace::Srgb),
-            },
+            emission: ColorInput::textured(
+                json.emissive_factor,
+                self.textures.get(json.emissive_texture.as_ref(), ColorSpace::Srgb),
+            ),
             emission_strength: x.emissive_strength.as_ref().map_or(1.0, |e| e.emissive_strength),
             normal: self.normal(json.normal_texture.as_ref()),
             occlusion: json.occlusion_texture.as_ref().and_then(|info| {
                 let texture = self.textures.get(Some(info), ColorSpace::Linear)?;
-                Some(ScalarInput {
-                    factor: self.unit(info.strength, "occlusion strength"),
-                    texture: Some((texture, Channel::R)),
-                })
+                let strength = self.unit(info.strength, "occlusion strength");
+                Some(ScalarInput::textured(strength, Some((texture, Channel::R))))
             }),
             unlit: x.unlit.is_some(),
             dispersion: x.dispersion.as_ref().map_or(0.0, |d| d.dispersion.max(0.0)),
@@ -185,7 +183,7 @@ impl Converter<'_, '_> {
     }
 
     fn color(&mut self, factor: [f64; 3], texture: Option<&TextureInfo>) -> ColorInput {
-        ColorInput { factor: factor.map(|c| c.max(0.0)), texture: self.textures.get(texture, ColorSpace::Srgb) }
+        ColorInput::textured(factor.map(|c| c.max(0.0)), self.textures.get(texture, ColorSpace::Srgb))
     }
 
     fn unit_color(&mut self, factor: [f64; 3], texture: Option<&TextureInfo>, what: &str) -> ColorInput {
@@ -196,7 +194,7 @@ impl Converter<'_, '_> {
     /// Alpha shares the colour's texture; the transfer function leaves it alone.
     fn alpha(&mut self, factor: f64, texture: Option<&TextureInfo>) -> ScalarInput {
         let texture = self.textures.get(texture, ColorSpace::Srgb);
-        ScalarInput { factor: self.unit(factor, "alpha"), texture: texture.map(|texture| (texture, Channel::A)) }
+        ScalarInput::textured(self.unit(factor, "alpha"), texture.map(|texture| (texture, Channel::A)))
     }
 
     fn scalar(&mut self, factor: f64, texture: Option<&TextureInfo>, channel: Channel, what: &str) -> ScalarInput {
@@ -206,12 +204,12 @@ impl Converter<'_, '_> {
 
     fn linear(&mut self, factor: f64, texture: Option<&TextureInfo>, channel: Channel) -> ScalarInput {
         let texture = self.textures.get(texture, ColorSpace::Linear);
-        ScalarInput { factor, texture: texture.map(|texture| (texture, channel)) }
+        ScalarInput::textured(factor, texture.map(|texture| (texture, channel)))
     }
 
     fn normal(&mut self, info: Option<&TextureInfo>) -> Option<NormalInput> {
         let texture = self.textures.get(info, ColorSpace::Linear)?;
-        Some(NormalInput { texture, scale: info?.scale })
+        Some(NormalInput::Map { texture, scale: info?.scale })
     }
 
     /// `value` held to 0 to 1, with a warning where that changes it.

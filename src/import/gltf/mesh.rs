@@ -82,6 +82,8 @@ pub(super) fn build(
         uvs: geometry.uvs.into_iter().map(Attribute::Point).collect(),
         tangents: None,
         colors: geometry.colors.map(Attribute::Point),
+        attributes: Vec::new(),
+        generated: None,
         material_slots: None,
         motion: Vec::new(),
     };

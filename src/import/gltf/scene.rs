@@ -18,7 +18,7 @@ use super::mesh::{self, Job};
 use super::node::{self, Hierarchy, PlacedNode};
 use super::texture::{Lookup, TextureTable};
 use super::{camera, instancing, material};
-use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, SceneDesc, Visibility};
+use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, ObjectInfo, SceneDesc, Visibility};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::{DAffine3, DMat4, DVec3};
 
@@ -317,6 +317,7 @@ impl Builder<'_> {
                     motion: Vec::new(),
                     materials: vec![part.material],
                     object_index: placed.node as u32 + 1,
+                    info: ObjectInfo::default(),
                     visibility: penumbra.visible(Visibility::ALL),
                     links: penumbra.links(),
                 });
@@ -357,7 +358,7 @@ impl Builder<'_> {
 /// The UV set that a material's tangents go by; `None` where it needs none.
 fn tangent_uv_set(material: &MaterialDesc) -> Option<u32> {
     let coat = material.coat.and_then(|coat| coat.normal);
-    let normal = material.normal.or(coat).map(|normal| normal.texture.uv_set);
+    let normal = material.normal.or(coat).and_then(|normal| normal.texture()).map(|texture| texture.uv_set);
     let anisotropy = material.anisotropy.filter(|a| a.strength > 0.0);
     normal.or(anisotropy.map(|a| a.texture.map_or(0, |texture| texture.uv_set)))
 }

@@ -11,7 +11,7 @@ use super::inherit::moving;
 use super::light::{self, ShapeLight};
 use super::shapes::{Dressed, Shapes};
 use super::stage::Reading;
-use crate::desc::{InstanceDesc, LightLinks, Motion, SceneDesc, Visibility};
+use crate::desc::{InstanceDesc, LightLinks, Motion, ObjectInfo, SceneDesc, Visibility};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -56,6 +56,7 @@ pub(super) fn place(
             motion: moving(times, &found.pose),
             materials,
             object_index: number as u32 + 1,
+            info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
         };

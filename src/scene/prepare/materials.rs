@@ -148,6 +148,14 @@ impl Builder<'_> {
         }
     }
 
+    fn normal(&mut self, normal: desc::NormalInput) -> Option<NormalInput> {
+        let desc::NormalInput::Map { texture, scale } = normal else { return None };
+        if scale == 0.0 || self.textures.constant(&texture).is_some() {
+            return None;
+        }
+        Some(NormalInput { input: self.textures.input(&texture)?, scale: scale as f32 })
+    }
+
     fn material(&mut self, desc: &MaterialDesc, warnings: &mut Warnings) -> Material {
         warn_of_effects_to_come(desc, warnings);
         let mut inputs = Vec::new();
@@ -176,10 +184,7 @@ impl Builder<'_> {
             absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
             emission: self.color(&mut inputs, &emission),
             unlit: desc.unlit,
-            normal: desc
-                .normal
-                .filter(|n| n.scale != 0.0 && self.textures.constant(&n.texture).is_none())
-                .and_then(|n| Some(NormalInput { input: self.textures.input(&n.texture)?, scale: n.scale as f32 })),
+            normal: desc.normal.and_then(|normal| self.normal(normal)),
             occlusion: desc
                 .occlusion
                 .filter(|o| self.settings.occlusion_maps && o.factor != 0.0 && o.texture.is_some())

@@ -6,7 +6,7 @@ use super::color::{hsv_to_rgb, rgb_to_hsv};
 /// How a second color b is put on a first one a, by a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
-    /// `a + t (b − a)`, all four places, each with its own factor.
+    /// `(1 − t) a + t b`, all four places, each with its own factor.
     Mix,
     /// `a + b`.
     Add,
@@ -50,7 +50,7 @@ impl Blend {
     /// a and b mixed by the factors `t`, of which only the plain mix looks at more than the first.
     pub(super) fn eval(self, t: Value, a: Value, b: Value) -> Value {
         if self == Self::Mix {
-            return std::array::from_fn(|i| a[i] + t[i] * (b[i] - a[i]));
+            return std::array::from_fn(|i| (1.0 - t[i]) * a[i] + t[i] * b[i]);
         }
         let t = t[0];
         let each = |f: fn(f64, f64) -> f64| lerp(a, [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])], t);
@@ -109,7 +109,7 @@ fn screen(a: f64, b: f64) -> f64 {
 }
 
 fn lerp(a: Value, [r, g, b]: [f64; 3], t: f64) -> Value {
-    [a[0] + t * (r - a[0]), a[1] + t * (g - a[1]), a[2] + t * (b - a[2]), a[3]]
+    [(1.0 - t) * a[0] + t * r, (1.0 - t) * a[1] + t * g, (1.0 - t) * a[2] + t * b, a[3]]
 }
 
 #[cfg(test)]

@@ -177,9 +177,7 @@ impl Function {
             Self::Equirectangular => map::equirectangular(a),
             Self::MirrorBall => map::mirror_ball(a),
             Self::BoxWeights(blend) => map::box_weights(a, *blend),
-            Self::MapRange { range, clamp, vector } => {
-                range.eval(a, [b, c], [arg(3), arg(4)], arg(5), *clamp, *vector)
-            }
+            Self::MapRange { range, clamp, vector } => range.eval(a, [b, c], [arg(3), arg(4)], arg(5), *clamp, *vector),
             Self::Mix { blend, clamp_factor, clamp_result } => {
                 let factor = if *clamp_factor { a.map(|x| x.clamp(0.0, 1.0)) } else { a };
                 let mixed = blend.eval(factor, b, c);

@@ -30,11 +30,8 @@ const OBSERVER: [[f64; 3]; 81] = [
 ];
 
 /// XYZ to linear Rec.709 (IEC 61966-2-1).
-const TO_RGB: [[f64; 3]; 3] = [
-    [3.2404542, -1.5371385, -0.4985314],
-    [-0.9692660, 1.8760108, 0.0415560],
-    [0.0556434, -0.2040259, 1.0572252],
-];
+const TO_RGB: [[f64; 3]; 3] =
+    [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]];
 
 fn to_rgb(xyz: [f64; 3]) -> [f64; 3] {
     TO_RGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
@@ -73,7 +70,8 @@ fn black_body(inverse: f64) -> [f64; 3] {
     for (i, bar) in OBSERVER.iter().enumerate() {
         let metres = (380.0 + 5.0 * i as f64) * 1e-9;
         // Relative to 560 nm: only ratios count.
-        let radiance = (560e-9 / metres).powi(5) * ((C2 / 560e-9 * inverse).exp_m1() / (C2 / metres * inverse).exp_m1());
+        let radiance =
+            (560e-9 / metres).powi(5) * ((C2 / 560e-9 * inverse).exp_m1() / (C2 / metres * inverse).exp_m1());
         (0..3).for_each(|k| xyz[k] += bar[k] * radiance);
     }
     to_rgb(xyz.map(|x| x / xyz[1]))

@@ -96,7 +96,8 @@ mod tests {
     #[test]
     fn maps_tilt_normals() {
         let (n, t) = ([0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, -1.0]);
-        let map = |color: Value, strength: f64, tangent: Value| Function::NormalMap.eval(&[color, [strength; 4], n, tangent]);
+        let map =
+            |color: Value, strength: f64, tangent: Value| Function::NormalMap.eval(&[color, [strength; 4], n, tangent]);
         let flat = [0.5, 0.5, 1.0, 1.0];
         assert_eq!(map(flat, 1.0, t), [0.0, 0.0, 1.0, 0.0]);
         // 45° along the tangent; the bitangent is turned round.

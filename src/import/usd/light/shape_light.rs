@@ -224,6 +224,7 @@ mod tests {
                     motion: Vec::new(),
                     materials: Vec::new(),
                     object_index: 0,
+                    info: crate::desc::ObjectInfo::default(),
                     visibility: crate::desc::Visibility::ALL,
                     links: LightLinks::default(),
                 });

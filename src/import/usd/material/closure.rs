@@ -3,8 +3,8 @@
 
 use super::evaluate::Evaluator;
 use super::expr::Id;
-use super::function::Function;
 use super::surface::Surface;
+use crate::desc::graph::{Function, Math};
 
 /// BSDF trees are followed so deep.
 const DEEPEST: usize = 64;
@@ -256,7 +256,7 @@ fn conductor(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
             let (below, above) = (x.subtract(n, one), x.add(n, one));
             let (below, above) = (x.multiply(below, below), x.multiply(above, above));
             let (below, above) = (x.add(below, k2), x.add(above, k2));
-            x.apply(Function::Divide, &[below, above])
+            x.apply(Function::Math(Math::Divide), &[below, above])
         }
     };
     weigh(e, node, &mut s.base_color);
@@ -280,7 +280,7 @@ fn roughness(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
     }
     let width = e.input(node, "roughness", [0.05; 4]);
     let width = e.exprs.extract(width, 0);
-    s.roughness = if e.materials.reading.blender { width } else { e.exprs.apply(Function::Sqrt, &[width]) };
+    s.roughness = if e.materials.reading.blender { width } else { e.exprs.apply(Function::Math(Math::Sqrt), &[width]) };
 }
 
 /// The angle, in radians counter-clockwise, by which the network turns the tangent in `input`. MaterialX

@@ -2,7 +2,7 @@
 
 use super::super::images::Space;
 use super::expr::{Exprs, Id};
-use super::function::Function;
+use crate::desc::graph::Function;
 
 /// ACEScg (AP1, white of ACES) to Rec.709 (D65), Bradford adaptation.
 /// <https://docs.acescentral.com/specifications/acescg/>
@@ -82,10 +82,10 @@ pub(super) fn convert(exprs: &mut Exprs, color: Id, space: &str) -> Option<Id> {
         Conversion::None => color,
         Conversion::Srgb => exprs.apply(Function::FromSrgb, &[color]),
         Conversion::Gamma(gamma) => exprs.apply(Function::FromGamma(gamma), &[color]),
-        Conversion::Primaries(matrix) => exprs.apply(Function::ToRec709(matrix), &[color]),
+        Conversion::Primaries(matrix) => exprs.apply(Function::Primaries(Box::new(matrix)), &[color]),
         Conversion::SrgbThen(matrix) => {
             let linear = exprs.apply(Function::FromSrgb, &[color]);
-            exprs.apply(Function::ToRec709(matrix), &[linear])
+            exprs.apply(Function::Primaries(Box::new(matrix)), &[linear])
         }
     })
 }

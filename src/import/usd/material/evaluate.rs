@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::expr::{Exprs, Id, Op};
-use super::function::{Function, V};
 use super::network::{Network, Node, Source, Value};
 use super::surface::Surface;
 use super::{Materials, color, pattern, texture};
+use crate::desc::graph::{Function, Value as V};
 
 /// The longest chain of nodes that is followed.
 const DEEPEST: usize = 256;

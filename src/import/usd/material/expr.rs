@@ -1,9 +1,10 @@
 //! What the inputs of a surface compute, as expressions of constants and texture lookups. What folds is
-//! folded when it is built, so that most inputs end as a constant or as `factor × texture + bias`.
+//! folded when it is built, so that most inputs end as a constant or as `factor × texture`; the rest becomes
+//! a value of the material's graph (`lower.rs`).
 
 use std::sync::Arc;
 
-use super::function::{Function, V};
+use crate::desc::graph::{Blend, Function, Math, Value as V};
 use crate::desc::{TextureRef, TextureTransform};
 
 /// An expression in an [`Exprs`].
@@ -28,6 +29,11 @@ pub(super) struct Lookup {
 pub(super) enum Op {
     Constant(V),
     Lookup(Lookup),
+    /// A texture whose coordinates (USD's, v upwards) are more than a placement.
+    Image {
+        texture: u32,
+        uv: Id,
+    },
     /// USD's texture coordinates, v upwards: rows of a 2×3 matrix.
     Uv {
         set: u32,
@@ -40,6 +46,9 @@ pub(super) enum Op {
     },
     Apply(Function, Vec<Id>),
 }
+
+/// `bg` where the factor is 0, `fg` where it is 1; the factor comes first.
+const MIX: Function = Function::Mix { blend: Blend::Mix, clamp_factor: false, clamp_result: false };
 
 /// The expressions of one material.
 #[derive(Debug, Default)]
@@ -87,19 +96,25 @@ impl Exprs {
         let mut needed = vec![false; root.0 as usize + 1];
         needed[root.0 as usize] = true;
         for i in (0..needed.len()).rev() {
-            if let (true, Op::Apply(_, args)) = (needed[i], &self.ops[i]) {
-                args.iter().for_each(|arg| needed[arg.0 as usize] = true);
+            match (needed[i], &self.ops[i]) {
+                (true, Op::Apply(_, args)) => args.iter().for_each(|arg| needed[arg.0 as usize] = true),
+                (true, Op::Image { uv, .. }) => needed[uv.0 as usize] = true,
+                _ => {}
             }
         }
         (0..needed.len() as u32).filter(|i| needed[*i as usize]).map(Id).collect()
     }
 
+    pub fn math(&mut self, math: Math, args: &[Id]) -> Id {
+        self.apply(Function::Math(math), args)
+    }
+
     pub fn add(&mut self, a: Id, b: Id) -> Id {
-        self.apply(Function::Add, &[a, b])
+        self.math(Math::Add, &[a, b])
     }
 
     pub fn multiply(&mut self, a: Id, b: Id) -> Id {
-        self.apply(Function::Multiply, &[a, b])
+        self.math(Math::Multiply, &[a, b])
     }
 
     pub fn scale(&mut self, a: Id, factor: f64) -> Id {
@@ -130,7 +145,7 @@ impl Exprs {
                 let upper = self.multiply(range, amount);
                 self.add(bg, upper)
             }
-            (None, None) => self.apply(Function::Mix, &[bg, fg, amount]),
+            (None, None) => self.apply(MIX, &[amount, bg, fg]),
         }
     }
 
@@ -148,29 +163,24 @@ impl Exprs {
         let values: Option<Vec<V>> = args.iter().map(|arg| self.known(*arg)).collect();
         if let Some(values) = values {
             let value = function.eval(&values);
-            return self.constant(value.map(|x| if x.is_finite() { x } else { 0.0 }));
+            return self.constant(value);
         }
-        self.fold(function, args).unwrap_or_else(|| self.push(Op::Apply(function, args.to_vec())))
+        self.fold(&function, args).unwrap_or_else(|| self.push(Op::Apply(function, args.to_vec())))
     }
 
-    fn fold(&mut self, function: Function, args: &[Id]) -> Option<Id> {
+    fn fold(&mut self, function: &Function, args: &[Id]) -> Option<Id> {
         match (function, args) {
-            (Function::Add | Function::Multiply, &[a, b]) => match (self.known(a), self.known(b)) {
-                (Some(value), None) => self.affine(function, b, value),
-                (None, Some(value)) => self.affine(function, a, value),
+            (&Function::Math(math @ (Math::Add | Math::Multiply)), &[a, b]) => match (self.known(a), self.known(b)) {
+                (Some(value), None) => self.affine(math, b, value),
+                (None, Some(value)) => self.affine(math, a, value),
                 _ => None,
             },
-            (Function::Divide, &[a, b]) => {
+            (Function::Math(Math::Divide), &[a, b]) => {
                 let inverse = self.known(b)?.map(|x| if x == 0.0 { 0.0 } else { x.recip() });
                 let inverse = self.constant(inverse);
                 Some(self.multiply(a, inverse))
             }
-            (Function::Mix, &[bg, fg, amount])
-                if self.known(amount).is_some() || (self.known(bg).is_some() && self.known(fg).is_some()) =>
-            {
-                Some(self.mix(bg, fg, amount))
-            }
-            (Function::Clamp, &[a, low, high]) => {
+            (Function::Math(Math::Clamp), &[a, low, high]) => {
                 let (low, high) = (self.known(low)?, self.known(high)?);
                 let Op::Lookup(lookup) = self.op(a) else { return None };
                 let inside = |i: usize| {
@@ -179,15 +189,15 @@ impl Exprs {
                 };
                 (lookup.unit && (0..3).all(inside)).then_some(a)
             }
-            (Function::Power | Function::SafePower, &[a, b]) if self.is(b, 1.0) => Some(a),
-            (Function::Swizzle(places), &[a]) => self.fold_swizzle(a, places),
+            (Function::Math(Math::Power | Math::SignedPower), &[a, b]) if self.is(b, 1.0) => Some(a),
+            (Function::Swizzle(places), &[a]) => self.fold_swizzle(a, *places),
             _ => None,
         }
     }
 
     /// `a + value` or `a × value`.
-    fn affine(&mut self, function: Function, a: Id, value: V) -> Option<Id> {
-        let multiplies = function == Function::Multiply;
+    fn affine(&mut self, math: Math, a: Id, value: V) -> Option<Id> {
+        let multiplies = math == Math::Multiply;
         // Alpha of a color is not looked at.
         let neutral = if multiplies { 1.0 } else { 0.0 };
         if value == [neutral; 4] {
@@ -196,7 +206,7 @@ impl Exprs {
         if multiplies && value[..3] == [0.0; 3] {
             return Some(self.constant([0.0; 4]));
         }
-        let change = |x: V| -> V { function.eval(&[x, value]) };
+        let change = |x: V| -> V { Function::Math(math).eval(&[x, value]) };
         let op = match self.op(a).clone() {
             Op::Lookup(l) if multiplies => Op::Lookup(Lookup { factor: change(l.factor), bias: change(l.bias), ..l }),
             Op::Lookup(l) => Op::Lookup(Lookup { bias: change(l.bias), ..l }),
@@ -206,14 +216,14 @@ impl Exprs {
             Op::Uv { set, rows: [[a, b, c], [d, e, f]] } => {
                 Op::Uv { set, rows: [[a, b, c + value[0]], [d, e, f + value[1]]] }
             }
-            Op::Apply(inner, args) if inner == function && args.len() == 2 => {
+            Op::Apply(Function::Math(inner), args) if inner == math && args.len() == 2 => {
                 let (place, other) = match (self.known(args[0]), self.known(args[1])) {
                     (Some(known), None) => (known, args[1]),
                     (None, Some(known)) => (known, args[0]),
                     _ => return None,
                 };
                 let both = self.constant(change(place));
-                return Some(self.apply(function, &[other, both]));
+                return Some(self.math(math, &[other, both]));
             }
             _ => return None,
         };
@@ -280,11 +290,11 @@ pub(super) mod tests {
         let alpha = e.extract(texture, 3);
         assert_eq!(e.known(alpha), Some([1.0; 4]));
         let zero = e.number(0.0);
-        assert_eq!(e.apply(Function::Clamp, &[texture, zero, one]), texture);
+        assert_eq!(e.math(Math::Clamp, &[texture, zero, one]), texture);
         let product = e.multiply(texture, red);
         let scaled = e.scale(product, 3.0);
         let again = e.scale(scaled, 2.0);
-        let Op::Apply(Function::Multiply, args) = e.op(again).clone() else { panic!() };
+        let Op::Apply(Function::Math(Math::Multiply), args) = e.op(again).clone() else { panic!() };
         assert_eq!(e.known(args[1]), Some([6.0; 4]));
     }
 

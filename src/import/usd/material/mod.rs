@@ -2,15 +2,14 @@
 //!
 //! ```text
 //! UsdShade prims ─┐                                                       ┌─ factor × texture
-//! .mtlx document ─┴─► network ─► model: inputs as expressions ─► surface ─┴─ computed image ─► MaterialDesc
+//! .mtlx document ─┴─► network ─► model: inputs as expressions ─► surface ─┴─ value of a graph ─► MaterialDesc
 //! ```
 
-mod bake;
 mod closure;
 mod color;
 mod evaluate;
 mod expr;
-mod function;
+mod lower;
 mod models;
 mod mtlx;
 mod network;
@@ -32,6 +31,7 @@ use self::network::{Network, Source, Value};
 use self::surface::{Finished, VertexColors};
 use super::images::{File, Images};
 use super::stage::Reading;
+use crate::desc::graph::{Leaf, Op};
 use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc};
 
 /// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
@@ -54,6 +54,14 @@ pub(super) fn is_in_document(reading: &Reading<'_>, path: &sdf::Path) -> bool {
     let found = mtlx::find(reading, path).is_some();
     reading.documents.borrow_mut().insert(path.clone(), found);
     found
+}
+
+/// UV sets that the graph of `material` asks for.
+fn graph_uv_sets(material: &MaterialDesc) -> impl Iterator<Item = u32> {
+    material.graph.ops().iter().filter_map(|op| match op {
+        Op::Leaf(Leaf::Uv(set)) => Some(*set),
+        _ => None,
+    })
 }
 
 /// Materials read so far.
@@ -157,13 +165,19 @@ impl<'a> Materials<'a> {
     pub fn tangent_uv_set(&self, index: u32) -> Option<u32> {
         let material = self.get(index)?;
         let coat = material.coat.and_then(|coat| coat.normal);
-        let normal = material.normal.or(coat).map(|normal| normal.texture.uv_set);
+        let normal = material.normal.or(coat).map(|normal| match normal.texture() {
+            Some(texture) => texture.uv_set,
+            // Whatever its graph looks up: a tilt has to go by something.
+            None => graph_uv_sets(material).next().unwrap_or(0),
+        });
         normal.or(material.anisotropy.filter(|a| a.strength > 0.0).map(|_| 0))
     }
 
     /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.
     pub fn used_uv_sets(&self, index: u32) -> Vec<u32> {
-        let mut sets: Vec<u32> = self.get(index).into_iter().flat_map(|m| m.textures()).map(|t| t.uv_set).collect();
+        let material = self.get(index);
+        let mut sets: Vec<u32> = material.into_iter().flat_map(|m| m.textures()).map(|t| t.uv_set).collect();
+        sets.extend(material.into_iter().flat_map(graph_uv_sets));
         sets.extend(self.tangent_uv_set(index));
         sets.sort_unstable();
         sets.dedup();
@@ -189,10 +203,6 @@ impl<'a> Materials<'a> {
             self.uv_sets.push(name);
             self.uv_sets.len() - 1
         }) as u32
-    }
-
-    fn tables(&self) -> bake::Tables<'_> {
-        bake::Tables { images: &self.images.images, textures: &self.textures }
     }
 
     fn read(&mut self, path: &sdf::Path) -> Option<Finished> {

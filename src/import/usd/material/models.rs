@@ -6,9 +6,9 @@
 use super::closure;
 use super::evaluate::Evaluator;
 use super::expr::Id;
-use super::function::Function;
 use super::network::Source;
 use super::surface::{Alpha, Coat, Film, Surface};
+use crate::desc::graph::Function;
 
 /// Reflectance at normal incidence of index 1.5.
 const F0_OF_1_5: f64 = 0.04;

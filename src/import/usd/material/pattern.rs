@@ -2,39 +2,38 @@
 
 use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
-use super::function::Function as F;
+use crate::desc::graph::{Function as F, Math};
 
 /// Names of the inputs of a function, with their defaults.
 type Inputs = &'static [(&'static str, f64)];
 
 /// Functions of which each input has one default.
 const SIMPLE: &[(&str, F, Inputs)] = &[
-    ("add", F::Add, &[("in1", 0.0), ("in2", 0.0)]),
-    ("multiply", F::Multiply, &[("in1", 0.0), ("in2", 1.0)]),
-    ("divide", F::Divide, &[("in1", 0.0), ("in2", 1.0)]),
-    ("modulo", F::Modulo, &[("in1", 0.0), ("in2", 1.0)]),
-    ("power", F::Power, &[("in1", 0.0), ("in2", 1.0)]),
-    ("safepower", F::SafePower, &[("in1", 0.0), ("in2", 1.0)]),
-    ("min", F::Minimum, &[("in1", 0.0), ("in2", 0.0)]),
-    ("max", F::Maximum, &[("in1", 0.0), ("in2", 0.0)]),
-    ("absval", F::Absolute, &[("in", 0.0)]),
-    ("sign", F::Sign, &[("in", 0.0)]),
-    ("floor", F::Floor, &[("in", 0.0)]),
-    ("ceil", F::Ceil, &[("in", 0.0)]),
-    ("round", F::Round, &[("in", 0.0)]),
-    ("fract", F::Fract, &[("in", 0.0)]),
-    ("sin", F::Sin, &[("in", 0.0)]),
-    ("cos", F::Cos, &[("in", 0.0)]),
-    ("tan", F::Tan, &[("in", 0.0)]),
-    ("asin", F::Asin, &[("in", 0.0)]),
-    ("acos", F::Acos, &[("in", 0.0)]),
-    ("atan2", F::Atan2, &[("iny", 0.0), ("inx", 1.0)]),
-    ("sqrt", F::Sqrt, &[("in", 0.0)]),
-    ("ln", F::Ln, &[("in", 1.0)]),
-    ("exp", F::Exp, &[("in", 0.0)]),
-    ("clamp", F::Clamp, &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
-    ("smoothstep", F::Smoothstep, &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
-    ("mix", F::Mix, &[("bg", 0.0), ("fg", 0.0), ("mix", 0.0)]),
+    ("add", F::Math(Math::Add), &[("in1", 0.0), ("in2", 0.0)]),
+    ("multiply", F::Math(Math::Multiply), &[("in1", 0.0), ("in2", 1.0)]),
+    ("divide", F::Math(Math::Divide), &[("in1", 0.0), ("in2", 1.0)]),
+    ("modulo", F::Math(Math::FlooredModulo), &[("in1", 0.0), ("in2", 1.0)]),
+    ("power", F::Math(Math::Power), &[("in1", 0.0), ("in2", 1.0)]),
+    ("safepower", F::Math(Math::SignedPower), &[("in1", 0.0), ("in2", 1.0)]),
+    ("min", F::Math(Math::Minimum), &[("in1", 0.0), ("in2", 0.0)]),
+    ("max", F::Math(Math::Maximum), &[("in1", 0.0), ("in2", 0.0)]),
+    ("absval", F::Math(Math::Absolute), &[("in", 0.0)]),
+    ("sign", F::Math(Math::Sign), &[("in", 0.0)]),
+    ("floor", F::Math(Math::Floor), &[("in", 0.0)]),
+    ("ceil", F::Math(Math::Ceil), &[("in", 0.0)]),
+    ("round", F::Math(Math::RoundAway), &[("in", 0.0)]),
+    ("fract", F::Math(Math::Fraction), &[("in", 0.0)]),
+    ("sin", F::Math(Math::Sine), &[("in", 0.0)]),
+    ("cos", F::Math(Math::Cosine), &[("in", 0.0)]),
+    ("tan", F::Math(Math::Tangent), &[("in", 0.0)]),
+    ("asin", F::Math(Math::Arcsine), &[("in", 0.0)]),
+    ("acos", F::Math(Math::Arccosine), &[("in", 0.0)]),
+    ("atan2", F::Math(Math::Arctangent2), &[("iny", 0.0), ("inx", 1.0)]),
+    ("sqrt", F::Math(Math::Sqrt), &[("in", 0.0)]),
+    ("ln", F::Math(Math::Ln), &[("in", 1.0)]),
+    ("exp", F::Math(Math::Exponent), &[("in", 0.0)]),
+    ("clamp", F::Math(Math::Clamp), &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
+    ("smoothstep", F::Math(Math::Smoothstep), &[("in", 0.0), ("low", 0.0), ("high", 1.0)]),
     ("ifgreater", F::IfGreater, &[("value1", 1.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
     ("ifgreatereq", F::IfGreaterOrEqual, &[("value1", 1.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
     ("ifequal", F::IfEqual, &[("value1", 0.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)]),
@@ -48,7 +47,7 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let data = e.node(node);
     let category = data.category.as_str();
     if let Some((_, function, inputs)) = SIMPLE.iter().find(|(name, _, _)| *name == category) {
-        return Some(e.function(node, *function, inputs));
+        return Some(e.function(node, function.clone(), inputs));
     }
     let count = count(&data.kind);
     Some(match category {
@@ -57,6 +56,10 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
         "subtract" => {
             let (a, b) = (e.input(node, "in1", [0.0; 4]), e.input(node, "in2", [0.0; 4]));
             e.exprs.subtract(a, b)
+        }
+        "mix" => {
+            let [bg, fg, amount] = ["bg", "fg", "mix"].map(|name| e.input(node, name, [0.0; 4]));
+            e.exprs.mix(bg, fg, amount)
         }
         "invert" => {
             let (a, b) = (e.input(node, "amount", [1.0; 4]), e.input(node, "in", [0.0; 4]));
@@ -163,7 +166,8 @@ fn remap(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
     let [a, in_low, out_low] = ["in", "inlow", "outlow"].map(|name| e.input(node, name, [0.0; 4]));
     let [in_high, out_high] = ["inhigh", "outhigh"].map(|name| e.input(node, name, [1.0; 4]));
     let (above, in_range) = (e.exprs.subtract(a, in_low), e.exprs.subtract(in_high, in_low));
-    let (share, out_range) = (e.exprs.apply(F::Divide, &[above, in_range]), e.exprs.subtract(out_high, out_low));
+    let (share, out_range) =
+        (e.exprs.apply(F::Math(Math::Divide), &[above, in_range]), e.exprs.subtract(out_high, out_low));
     let above = e.exprs.multiply(share, out_range);
     e.exprs.add(above, out_low)
 }
@@ -172,14 +176,18 @@ fn range(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
     let [a, in_low, out_low] = ["in", "inlow", "outlow"].map(|name| e.input(node, name, [0.0; 4]));
     let [in_high, out_high, gamma] = ["inhigh", "outhigh", "gamma"].map(|name| e.input(node, name, [1.0; 4]));
     let (above, in_range) = (e.exprs.subtract(a, in_low), e.exprs.subtract(in_high, in_low));
-    let share = e.exprs.apply(F::Divide, &[above, in_range]);
+    let share = e.exprs.apply(F::Math(Math::Divide), &[above, in_range]);
     let one = e.exprs.number(1.0);
-    let power = e.exprs.apply(F::Divide, &[one, gamma]);
-    let share = if e.exprs.is(power, 1.0) { share } else { e.exprs.apply(F::SafePower, &[share, power]) };
+    let power = e.exprs.apply(F::Math(Math::Divide), &[one, gamma]);
+    let share = if e.exprs.is(power, 1.0) { share } else { e.exprs.apply(F::Math(Math::SignedPower), &[share, power]) };
     let out_range = e.exprs.subtract(out_high, out_low);
     let above = e.exprs.multiply(share, out_range);
     let value = e.exprs.add(above, out_low);
-    if e.uniform(node, "doclamp", 0.0) == 0.0 { value } else { e.exprs.apply(F::Clamp, &[value, out_low, out_high]) }
+    if e.uniform(node, "doclamp", 0.0) == 0.0 {
+        value
+    } else {
+        e.exprs.apply(F::Math(Math::Clamp), &[value, out_low, out_high])
+    }
 }
 
 /// The blend nodes: a function of foreground and background, mixed over the background.
@@ -194,17 +202,17 @@ fn blend(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Option<Id> {
         "minus" => x.subtract(bg, fg),
         "difference" => {
             let difference = x.subtract(bg, fg);
-            x.apply(F::Absolute, &[difference])
+            x.apply(F::Math(Math::Absolute), &[difference])
         }
         "screen" => {
             let product = x.multiply(not_fg, not_bg);
             x.subtract(one, product)
         }
         "burn" => {
-            let ratio = x.apply(F::Divide, &[not_bg, fg]);
+            let ratio = x.apply(F::Math(Math::Divide), &[not_bg, fg]);
             x.subtract(one, ratio)
         }
-        "dodge" => x.apply(F::Divide, &[bg, not_fg]),
+        "dodge" => x.apply(F::Math(Math::Divide), &[bg, not_fg]),
         "overlay" => {
             // Per channel: multiplied where the background is dark, screened where it is bright.
             let (dark, bright) = (x.multiply(fg, bg), x.multiply(not_fg, not_bg));
@@ -212,10 +220,10 @@ fn blend(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Option<Id> {
             let bright = x.subtract(one, bright);
             let half = x.number(0.5);
             let step = x.subtract(bg, half);
-            let step = x.apply(F::Sign, &[step]);
+            let step = x.apply(F::Math(Math::Sign), &[step]);
             let step = x.add(step, one);
             let step = x.scale(step, 0.5);
-            x.apply(F::Mix, &[dark, bright, step])
+            x.mix(dark, bright, step)
         }
         _ => return None,
     };
@@ -288,7 +296,7 @@ fn position(e: &mut Evaluator<'_, '_>, node: usize, place: u8) -> Id {
     let uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
     let along = e.exprs.extract(uv, place);
     let (zero, one) = (e.exprs.number(0.0), e.exprs.number(1.0));
-    e.exprs.apply(F::Clamp, &[along, zero, one])
+    e.exprs.apply(F::Math(Math::Clamp), &[along, zero, one])
 }
 
 fn ramp(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Id {

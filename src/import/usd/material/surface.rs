@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::bake;
 use super::evaluate::Evaluator;
 use super::expr::{Id, Lookup, Op};
-use super::function::{Function, V};
+use super::lower::Lowering;
+use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
-    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, ColorSpace, ImageDesc, IridescenceDesc, MaterialDesc,
-    NormalInput, PixelData, ScalarInput, SheenDesc, TextureDesc, TextureRef, VolumeDesc,
+    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
+    SheenDesc, VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -116,7 +116,7 @@ impl Surface {
 
 /// The surface as a material; `node` is where warnings are told.
 pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -> Finished {
-    let mut f = Finisher { e, node, baked: Vec::new() };
+    let mut f = Finisher { e, node, lowering: Lowering::default() };
     let (color, base_color) = f.without_primvar("displayColor", surface.base_color);
     let (opacity, alpha) = match color {
         Some(_) => f.without_primvar("displayOpacity", surface.opacity),
@@ -181,14 +181,14 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         surface.anisotropy.filter(|(strength, _)| !f.e.exprs.is(*strength, 0.0)).map(|(strength, rotation)| {
             AnisotropyDesc { strength: f.number("anisotropy", strength), rotation, texture: None }
         });
+    material.graph = f.lowering.graph;
     Finished { material, colors }
 }
 
 struct Finisher<'e, 'm, 'a> {
     e: &'e mut Evaluator<'m, 'a>,
     node: usize,
-    /// Images that were computed, with their channels.
-    baked: Vec<(Id, u8, TextureRef)>,
+    lowering: Lowering,
 }
 
 impl Finisher<'_, '_, '_> {
@@ -197,9 +197,9 @@ impl Finisher<'_, '_, '_> {
         match self.e.exprs.op(id) {
             Op::Constant([r, g, b, _]) => ColorInput::constant([*r, *g, *b]),
             Op::Lookup(l) if l.bias[..3] == [0.0; 3] && is_color(l) => {
-                ColorInput { factor: [l.factor[0], l.factor[1], l.factor[2]], texture: Some(l.texture) }
+                ColorInput::textured([l.factor[0], l.factor[1], l.factor[2]], Some(l.texture))
             }
-            _ => ColorInput { factor: [1.0; 3], texture: self.bake(what, id, 3) },
+            _ => ColorInput::graph(self.lowering.value(&self.e.exprs, id)),
         }
     }
 
@@ -208,9 +208,9 @@ impl Finisher<'_, '_, '_> {
         match self.e.exprs.op(id) {
             Op::Constant(value) => ScalarInput::constant(value[0]),
             Op::Lookup(l) if l.bias[0] == 0.0 => {
-                ScalarInput { factor: l.factor[0], texture: Some((l.texture, channel(l.swizzle[0]))) }
+                ScalarInput::textured(l.factor[0], Some((l.texture, channel(l.swizzle[0]))))
             }
-            _ => ScalarInput { factor: 1.0, texture: self.bake(what, id, 1).map(|texture| (texture, Channel::R)) },
+            _ => ScalarInput::graph(self.lowering.value(&self.e.exprs, id)),
         }
     }
 
@@ -230,35 +230,29 @@ impl Finisher<'_, '_, '_> {
             return value;
         }
         self.e.warn(self.node, format!("its {what} can't vary over the surface; the mean is used"));
-        let materials = &*self.e.materials;
-        bake::mean(&self.e.exprs, id, materials.tables())
+        self.lowering.mean(&self.e.exprs, id, self.e.materials)
     }
 
     /// A tangent-space normal, −1 to 1.
     fn normal(&mut self, what: &str, id: Id) -> Option<NormalInput> {
         let id = self.textures_only(what, id);
         match self.e.exprs.op(id) {
-            Op::Constant([x, y, ..]) => {
-                if *x != 0.0 || *y != 0.0 {
-                    self.e.warn(self.node, format!("its {what} is the same tilt everywhere, which isn't read"));
-                }
-                return None;
-            }
+            Op::Constant([x, y, ..]) if *x == 0.0 && *y == 0.0 => return None,
             // 2 t − 1, the first two times a factor, which is how maps are stored.
             Op::Lookup(l) if is_color(l) && l.factor[2] == 2.0 && l.bias[2] == -1.0 => {
                 let scale = l.factor[0] / 2.0;
                 let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
                 if close(l.factor[1], l.factor[0]) && close(l.bias[0], -scale) && close(l.bias[1], -scale) {
-                    return Some(NormalInput { texture: l.texture, scale });
+                    return Some(NormalInput::Map { texture: l.texture, scale });
                 }
             }
             _ => {}
         }
-        let half = self.e.exprs.number(0.5);
-        let stored = self.e.exprs.apply(Function::Normalize(3), &[id]);
-        let stored = self.e.exprs.multiply(stored, half);
-        let stored = self.e.exprs.add(stored, half);
-        Some(NormalInput { texture: self.bake(what, stored, 3)?, scale: 1.0 })
+        let tilt = self.lowering.value(&self.e.exprs, id);
+        let graph = &mut self.lowering.graph;
+        let (half, one, tangent) = (graph.number(0.5), graph.number(1.0), graph.leaf(Leaf::Tangent));
+        let stored = graph.math(Math::MultiplyAdd, &[tilt, half, half]);
+        Some(NormalInput::Graph(graph.normal_map(stored, one, tangent)))
     }
 
     /// The factor of an occlusion is its strength.
@@ -271,8 +265,7 @@ impl Finisher<'_, '_, '_> {
         if input.factor == 1.0 {
             return Some(input);
         }
-        let texture = self.bake("occlusion", id, 1)?;
-        Some(ScalarInput { factor: 1.0, texture: Some((texture, Channel::R)) })
+        Some(ScalarInput::graph(self.lowering.value(&self.e.exprs, id)))
     }
 
     /// The primvar `wanted`, where it multiplies all the rest, and the rest.
@@ -290,7 +283,7 @@ impl Finisher<'_, '_, '_> {
         if let Some(name) = primvar(id) {
             return (Some(name), self.e.exprs.number(1.0));
         }
-        if let Op::Apply(Function::Multiply, args) = self.e.exprs.op(id)
+        if let Op::Apply(Function::Math(Math::Multiply), args) = self.e.exprs.op(id)
             && let [a, b] = args[..]
         {
             for (one, other) in [(a, b), (b, a)] {
@@ -315,6 +308,12 @@ impl Finisher<'_, '_, '_> {
                     let new = self.e.exprs.constant(fallback);
                     replaced.push((old, new));
                 }
+                Op::Image { texture, uv } => {
+                    if let Some((_, new_uv)) = replaced.iter().find(|(old, _)| *old == uv) {
+                        let new = self.e.exprs.push(Op::Image { texture, uv: *new_uv });
+                        replaced.push((old, new));
+                    }
+                }
                 Op::Apply(function, args) if args.iter().any(|arg| replaced.iter().any(|(old, _)| old == arg)) => {
                     let new = |arg: &Id| replaced.iter().find(|(old, _)| old == arg).map_or(*arg, |(_, new)| *new);
                     let args: Vec<Id> = args.iter().map(new).collect();
@@ -325,35 +324,6 @@ impl Finisher<'_, '_, '_> {
             }
         }
         replaced.iter().find(|(old, _)| *old == id).map_or(id, |(_, new)| *new)
-    }
-
-    /// A computed image; `None` where nothing textures it.
-    fn bake(&mut self, what: &str, id: Id, channels: u8) -> Option<TextureRef> {
-        if let Some((_, _, known)) = self.baked.iter().find(|baked| (baked.0, baked.1) == (id, channels)) {
-            return Some(*known);
-        }
-        let Evaluator { materials, exprs, .. } = &mut *self.e;
-        let domain = bake::domain(exprs, id, materials.tables())?;
-        let pixels = bake::image(exprs, id, &domain, materials.tables(), channels);
-        let place = self.e.node(self.node).place.clone();
-        for note in &domain.notes {
-            self.e.warn(self.node, format!("its {what} is computed into an image: {note}"));
-        }
-        let [width, height] = domain.size;
-        let image = self.e.materials.images.push(ImageDesc {
-            name: what.into(),
-            place: place.clone(),
-            width,
-            height,
-            channels,
-            color_space: ColorSpace::Linear,
-            pixels: PixelData::F16(pixels),
-        });
-        let [wrap_u, wrap_v] = domain.wrap;
-        let texture = self.e.materials.texture(TextureDesc { place, image, wrap_u, wrap_v, filter: domain.filter });
-        let texture = TextureRef { texture, uv_set: domain.uv_set, transform: domain.transform };
-        self.baked.push((id, channels, texture));
-        Some(texture)
     }
 }
 

@@ -5,8 +5,8 @@ use super::super::udim;
 use super::color;
 use super::evaluate::Evaluator;
 use super::expr::{Id, Lookup, Op, placement};
-use super::function::{Function, V};
 use super::network::Value;
+use crate::desc::graph::{Math, Value as V};
 use crate::desc::{Filter, PixelData, TextureDesc, TextureRef, Wrap};
 
 /// A lookup as a node asks for it.
@@ -86,7 +86,7 @@ pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Opti
             (e.input(node, "realworldimagesize", [1.0; 4]), e.input(node, "realworldtilesize", [1.0; 4]));
         let tiled = e.exprs.multiply(uv, tiling);
         let moved = e.exprs.subtract(tiled, offset);
-        let sized = e.exprs.apply(Function::Divide, &[moved, size]);
+        let sized = e.exprs.math(Math::Divide, &[moved, size]);
         uv = e.exprs.multiply(sized, tile);
     }
     let wrap = ["uaddressmode", "vaddressmode"].map(|name| match data.text(name) {
@@ -116,19 +116,14 @@ fn file<'m>(e: &Evaluator<'m, '_>, node: usize) -> Option<&'m File> {
 }
 
 fn look_up(e: &mut Evaluator<'_, '_>, node: usize, wish: &Wish<'_>) -> Result<Id, String> {
-    let Op::Uv { set, mut rows } = *e.exprs.op(wish.uv) else {
-        e.warn(node, "its texture coordinates are more than a placement of a primvar; primvars:st is used");
-        let uv = e.texcoord("st".into());
-        return look_up(e, node, &Wish { uv, ..*wish });
-    };
+    let mut tiles_of = [1.0; 2];
     let (image, wrap) = match wish.file {
         None => return Err("names no image".to_string()),
         Some(File::Missing(what)) => return Err(what.clone()),
         Some(File::One(file)) => (e.materials.images.get(file, wish.space)?, wish.wrap),
         Some(File::Tiles(tiles)) => {
             let (image, [columns, lines]) = e.materials.udim(tiles, wish.space)?;
-            rows[0] = rows[0].map(|x| x / f64::from(columns));
-            rows[1] = rows[1].map(|x| x / f64::from(lines));
+            tiles_of = [columns, lines].map(f64::from);
             (image, [Wrap::Black; 2])
         }
     };
@@ -137,6 +132,14 @@ fn look_up(e: &mut Evaluator<'_, '_>, node: usize, wish: &Wish<'_>) -> Result<Id
     let place = e.node(node).place.clone();
     let texture = TextureDesc { place, image, wrap_u: wrap[0], wrap_v: wrap[1], filter: wish.filter };
     let texture = e.materials.texture(texture);
+    let Op::Uv { set, mut rows } = *e.exprs.op(wish.uv) else {
+        let tiles = e.exprs.constant([tiles_of[0].recip(), tiles_of[1].recip(), 1.0, 1.0]);
+        let uv = e.exprs.multiply(wish.uv, tiles);
+        return Ok(e.exprs.push(Op::Image { texture, uv }));
+    };
+    for (row, tiles) in rows.iter_mut().zip(tiles_of) {
+        *row = row.map(|x| x / tiles);
+    }
     let texture = TextureRef { texture, uv_set: set, transform: placement(rows) };
     let swizzle = [0, 1, 2, 3];
     Ok(e.exprs.push(Op::Lookup(Lookup { texture, channels, unit, swizzle, factor: [1.0; 4], bias: [0.0; 4] })))
@@ -163,9 +166,9 @@ pub(super) fn place(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     if offset_first {
         uv = e.exprs.subtract(uv, offset);
         uv = rotate(e, uv, angle);
-        uv = e.exprs.apply(Function::Divide, &[uv, scale]);
+        uv = e.exprs.math(Math::Divide, &[uv, scale]);
     } else {
-        uv = e.exprs.apply(Function::Divide, &[uv, scale]);
+        uv = e.exprs.math(Math::Divide, &[uv, scale]);
         uv = rotate(e, uv, angle);
         uv = e.exprs.subtract(uv, offset);
     }

@@ -121,6 +121,8 @@ impl Surface {
             uvs: sets,
             tangents,
             colors,
+            attributes: Vec::new(),
+            generated: None,
             material_slots,
             motion,
         })

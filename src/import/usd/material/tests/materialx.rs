@@ -251,11 +251,11 @@ fn a_document_is_read_through_its_reference() {
         same(&m.base_color.factor, &[0.5; 3]);
         let (texture, image) = read.texture(m.base_color.texture.unwrap().texture);
         assert_eq!((texture.wrap_u, image.color_space), (Wrap::Mirror, ColorSpace::Srgb));
-        let normal = m.normal.unwrap();
-        same(&[normal.scale], &[0.25]);
-        let TextureTransform([u, v]) = normal.texture.transform;
+        let NormalInput::Map { texture, scale } = m.normal.unwrap() else { panic!() };
+        same(&[scale], &[0.25]);
+        let TextureTransform([u, v]) = texture.transform;
         same(&[u[0], v[1], v[2]], &[4.0, 2.0, -1.0]);
-        assert_eq!(read.texture(normal.texture.texture).1.color_space, ColorSpace::Linear);
+        assert_eq!(read.texture(texture.texture).1.color_space, ColorSpace::Linear);
         assert_eq!(read.warnings, "");
     }
     let gone = read_at(folder.path(), "def Scope \"M\" (references = @no.mtlx@</MaterialX>) {}", "/M/Materials/paint");

@@ -132,9 +132,9 @@ fn textures_have_scale_wrap_space_and_channel() {
     assert_eq!((texture.wrap_u, texture.wrap_v, image.color_space), (Wrap::Clamp, Wrap::Black, ColorSpace::Linear));
     // The alpha of an image without is 1.
     assert_eq!((m.alpha, m.alpha_mode), (ScalarInput::constant(1.0), AlphaMode::Opaque));
-    assert_eq!(m.occlusion.unwrap(), ScalarInput { factor: 1.0, texture: Some((roughness, Channel::R)) });
-    let normal = m.normal.unwrap();
-    assert!(close(normal.scale, 0.7));
+    assert_eq!(m.occlusion.unwrap(), ScalarInput::textured(1.0, Some((roughness, Channel::R))));
+    let NormalInput::Map { scale, .. } = m.normal.unwrap() else { panic!() };
+    assert!(close(scale, 0.7));
     assert_eq!((read.scene.images.len(), read.scene.textures.len()), (2, 3));
     assert_eq!(read.warnings, "");
 }
