@@ -106,10 +106,17 @@ impl Scene {
         Ok(())
     }
 
-    /// Takes in all placements: object indices (uint32) and matrices (float32, 16 per instance, by rows).
-    fn set_instances(&self, objects: PyReadonlyArray1<'_, u32>, matrices: Floats<'_>) -> PyResult<()> {
+    /// Takes in all placements: object indices (uint32), matrices (float32, 16 per instance, by rows) and
+    /// random ids (uint32; 0 for what is no instance).
+    fn set_instances(
+        &self,
+        objects: PyReadonlyArray1<'_, u32>,
+        matrices: Floats<'_>,
+        random_ids: PyReadonlyArray1<'_, u32>,
+    ) -> PyResult<()> {
         let objects = objects.as_slice().map_err(|_| contiguous())?;
-        self.lock().set_instances(objects, floats(&matrices)?).map_err(|error| exception(&error))
+        let random_ids = random_ids.as_slice().map_err(|_| contiguous())?;
+        self.lock().set_instances(objects, floats(&matrices)?, random_ids).map_err(|error| exception(&error))
     }
 }
 

@@ -29,7 +29,8 @@ def hand_over(scene, key, mesh):
     if slots is not None:
         arrays["material_index"] = _array(slots.data, "value", 1, np.int32)
         arrays["triangle_polygons"] = _array(mesh.loop_triangle_polygons, "value", 1, np.int32)
-    scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh), **arrays)
+    scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh),
+                   texture_space=[list(mesh.texspace_location), list(mesh.texspace_size)], **arrays)
 
 
 def _corner_verts(mesh):

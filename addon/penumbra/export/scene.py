@@ -28,7 +28,7 @@ class Exporter:
         self._lights = []
         self._links = []
         self._meshes = set()
-        of_instance, matrices = [], []
+        of_instance, matrices, random_ids = [], [], []
         for instance in depsgraph.object_instances:
             obj = instance.object
             if not instance.show_self:
@@ -41,6 +41,7 @@ class Exporter:
                 if index is not None:
                     of_instance.append(index)
                     matrices.append([x for row in instance.matrix_world for x in row])
+                    random_ids.append(instance.random_id & 0xFFFFFFFF if instance.is_instance else 0)
         for data, obj in self._links:
             self._link(data, obj)
         scene = depsgraph.scene_eval
@@ -56,7 +57,7 @@ class Exporter:
         }
         self.scene.set_document(self._json(document))
         matrices = np.asarray(matrices, np.float32).reshape(-1)
-        self.scene.set_instances(np.asarray(of_instance, np.uint32), matrices)
+        self.scene.set_instances(np.asarray(of_instance, np.uint32), matrices, np.asarray(random_ids, np.uint32))
 
     def _json(self, document):
         """The document as JSON, which has no NaN and no infinity."""
@@ -84,6 +85,7 @@ class Exporter:
                 "mesh": shape,
                 "materials": [self._material(slot.material) for slot in obj.material_slots],
                 "pass_index": obj.pass_index,
+                "color": list(obj.color),
                 "visibility": self.visibility(obj),
                 "lightgroup": obj.lightgroup,
             })

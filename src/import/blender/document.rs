@@ -284,7 +284,7 @@ impl Default for ImageData {
 }
 
 /// An object with a shape.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(default)]
 pub struct ObjectData {
     /// Its name.
@@ -297,6 +297,8 @@ pub struct ObjectData {
     pub materials: Vec<Option<u32>>,
     /// `pass_index`.
     pub pass_index: u32,
+    /// `Object.color`.
+    pub color: [f64; 4],
     /// Which rays see it.
     pub visibility: VisibilityData,
     /// Light group of what it emits.
@@ -305,6 +307,23 @@ pub struct ObjectData {
     pub receivers: Option<LinkData>,
     /// What stops its light (shadow linking).
     pub blockers: Option<LinkData>,
+}
+
+impl Default for ObjectData {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            asset: String::new(),
+            mesh: 0,
+            materials: Vec::new(),
+            pass_index: 0,
+            color: [1.0; 4],
+            visibility: VisibilityData::default(),
+            lightgroup: String::new(),
+            receivers: None,
+            blockers: None,
+        }
+    }
 }
 
 /// Which kinds of ray see something, by Blender's names.

@@ -13,6 +13,7 @@ mod light;
 mod material;
 mod mesh;
 mod nodes;
+mod random;
 mod scene;
 mod transform;
 mod world;

@@ -9,8 +9,8 @@ use super::nodes::TreeData;
 use super::transform::affine_of_floats;
 use super::layers::UvSets;
 use super::light::LampShader;
-use super::{camera, light, material, nodes, world};
-use crate::desc::{InstanceDesc, LightLinks, MeshDesc, SceneDesc};
+use super::{camera, light, material, nodes, random, world};
+use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -19,10 +19,20 @@ pub struct BlenderScene {
     document: Document,
     meshes: HashMap<u64, NamedMesh>,
     images: HashMap<String, ImageSource>,
-    /// Index of the object of each instance, and its matrix by rows.
-    instances: Vec<(u32, [f32; 16])>,
+    instances: Vec<Placement>,
     /// What was told of meshes as they came.
     of_meshes: HashMap<u64, Warnings>,
+}
+
+/// An instance of an object.
+#[derive(Clone, Copy, Debug)]
+struct Placement {
+    /// Index of the object.
+    object: u32,
+    /// Its matrix by rows.
+    matrix: [f32; 16],
+    /// The random id that Blender gives instances; 0 for the object itself.
+    random: u32,
 }
 
 impl BlenderScene {
@@ -67,17 +77,21 @@ impl BlenderScene {
         self.images.insert(name.to_owned(), image);
     }
 
-    /// Takes in all placements: object indices and as many matrices of sixteen floats by rows.
+    /// Takes in all placements: object indices, as many matrices of sixteen floats by rows, and the random
+    /// id of each instance, 0 for the object itself.
     ///
     /// # Errors
     /// Lists of different lengths.
-    pub fn set_instances(&mut self, objects: &[u32], matrices: &[f32]) -> Result<()> {
+    pub fn set_instances(&mut self, objects: &[u32], matrices: &[f32], random: &[u32]) -> Result<()> {
         let (matrices, rest) = matrices.as_chunks::<16>();
-        if !rest.is_empty() || matrices.len() != objects.len() {
-            let what = format!("{} matrices for {} instances", matrices.len(), objects.len());
+        let count = objects.len();
+        if !rest.is_empty() || matrices.len() != count || random.len() != count {
+            let what = format!("{} matrices and {} random ids for {count} instances", matrices.len(), random.len());
             return Err(Error::invalid(&self.place(), what));
         }
-        self.instances = objects.iter().copied().zip(matrices.iter().copied()).collect();
+        let placements = objects.iter().zip(matrices).zip(random);
+        self.instances =
+            placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
         Ok(())
     }
 
@@ -116,8 +130,8 @@ impl BlenderScene {
         let mut index_of: HashMap<u64, u32> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
         let mut lost = 0;
-        for (object, matrix) in &self.instances {
-            let Some(data) = document.objects.get(*object as usize) else {
+        for &Placement { object, matrix, random } in &self.instances {
+            let Some(data) = document.objects.get(object as usize) else {
                 lost += 1;
                 continue;
             };
@@ -127,18 +141,23 @@ impl BlenderScene {
                 desc.meshes.push(MeshDesc { uvs: uv_sets.of(mesh), ..mesh.mesh.clone() });
                 desc.meshes.len() as u32 - 1
             });
-            of_object[*object as usize].push(desc.instances.len() as u32);
+            of_object[object as usize].push(desc.instances.len() as u32);
             desc.instances.push(InstanceDesc {
                 name: data.name.as_str().into(),
                 place: desc.place.at(&data.name),
                 asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
                 mesh: index,
-                transform: affine_of_floats(matrix),
+                transform: affine_of_floats(&matrix),
                 motion: Vec::new(),
                 materials: data.materials.clone(),
                 object_index: data.pass_index,
                 visibility: data.visibility.into(),
-                links: Default::default(),
+                links: LightLinks::default(),
+                info: ObjectInfo {
+                    color: data.color,
+                    random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },
+                    attributes: Vec::new(),
+                },
             });
         }
         if lost > 0 {
