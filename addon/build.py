@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds the extension: one zip for Blender 4.2 and later, the engine's wheel inside.
 
-    python addon/build.py [--out DIR] [--wheel FILE]
+    python addon/build.py [--out DIR] [--wheel FILE] [--profile PROFILE]
 
 Needs maturin (pip install maturin) and Rust, unless a wheel is given. Prints the zip's path.
 """
@@ -27,9 +27,9 @@ PLATFORMS = {
 }
 
 
-def build_wheel(folder):
+def build_wheel(folder, profile):
     """The wheel, built from this checkout."""
-    command = [sys.executable, "-m", "maturin", "build", "--release", "--out", folder]
+    command = [sys.executable, "-m", "maturin", "build", "--profile", profile, "--out", folder]
     subprocess.run(command, cwd=ROOT, check=True, stdout=sys.stderr)
     return next(pathlib.Path(folder).glob("penumbra-*.whl"))
 
@@ -65,10 +65,11 @@ def main():
     parser = argparse.ArgumentParser(description="Builds Penumbra's extension for Blender")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / "addon")
     parser.add_argument("--wheel", type=pathlib.Path, help="a wheel that is there already")
+    parser.add_argument("--profile", default="release", help="Cargo's profile for the wheel")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        wheel = args.wheel or build_wheel(folder)
+        wheel = args.wheel or build_wheel(folder, args.profile)
         kept = args.out / wheel.name
         if wheel.resolve() != kept.resolve():
             shutil.copy(wheel, kept)

@@ -6,7 +6,7 @@ import bpy
 import penumbra
 
 from . import passes, properties
-from .export import Exporter
+from .export import Exporter, camera
 
 
 class PenumbraRenderEngine(bpy.types.RenderEngine):
@@ -49,8 +49,12 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         if self.test_break():
             return
 
+        # Blender makes room for the border alone where it is cropped to.
+        border = camera.border(scene, size)
+        corner = (0, 0) if border is None or scene.render.use_crop_to_border else border[:2]
+
         def show(picture):
-            self._fill(view_layer, picture, size)
+            self._fill(view_layer, picture, corner)
 
         picture = penumbra.render(
             exporter.scene,
@@ -60,7 +64,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             **properties.settings(scene, view_layer),
         )
         self._tell(picture.warnings)
-        self._fill(view_layer, picture, size)
+        self._fill(view_layer, picture, corner)
 
     def _observe(self, progress):
         """Called by the engine, on Blender's thread; a true answer stops the render."""
@@ -74,9 +78,9 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             self.update_stats("", text)
         return self.test_break()
 
-    def _fill(self, view_layer, picture, size):
-        """Puts a picture into Blender's render result."""
-        result = self.begin_result(0, 0, *size, layer=view_layer.name)
+    def _fill(self, view_layer, picture, corner):
+        """Puts a picture into Blender's render result, its lower left corner at `corner`."""
+        result = self.begin_result(*corner, picture.width, picture.height, layer=view_layer.name)
         try:
             for render_pass in result.layers[0].passes:
                 if render_pass.name in picture:

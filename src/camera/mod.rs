@@ -1,9 +1,13 @@
 //! Cameras: from a point of the picture to a ray.
 
+mod lens;
 mod orthographic;
+mod panorama;
 mod perspective;
 
+pub use lens::Lens;
 pub use orthographic::Orthographic;
+pub use panorama::Panorama;
 pub use perspective::Perspective;
 
 use crate::math::{Frame, Ray, Vec3};
@@ -58,29 +62,107 @@ impl View {
     }
 }
 
-/// Any camera.
+/// How a camera projects.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Camera {
+pub enum Projection {
     /// See [`Perspective`].
     Perspective(Perspective),
     /// See [`Orthographic`].
     Orthographic(Orthographic),
+    /// See [`Panorama`].
+    Panorama(Panorama),
+}
+
+/// A camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// How it projects.
+    pub projection: Projection,
+    /// Its lens; `None` for a pinhole.
+    pub lens: Option<Lens>,
+    /// Left upper corner of what is rendered, in pixels of the whole picture.
+    pub corner: [f32; 2],
 }
 
 impl Camera {
-    /// The ray through `(x, y)`, in pixels from the top left corner of the picture.
+    /// The ray through `(x, y)`, in pixels from the top left corner of what is rendered, from the middle
+    /// of the lens.
     pub fn ray(&self, x: f32, y: f32) -> CameraRay {
-        match self {
-            Self::Perspective(camera) => camera.ray(x, y),
-            Self::Orthographic(camera) => camera.ray(x, y),
+        let (x, y) = (x + self.corner[0], y + self.corner[1]);
+        match &self.projection {
+            Projection::Perspective(camera) => camera.ray(x, y),
+            Projection::Orthographic(camera) => camera.ray(x, y),
+            Projection::Panorama(camera) => camera.ray(x, y),
+        }
+    }
+
+    /// The same from a point of the lens; `u` is asked only where there is one.
+    pub fn lens_ray(&self, x: f32, y: f32, u: impl FnOnce() -> [f32; 2]) -> CameraRay {
+        let straight = self.ray(x, y);
+        let Some(lens) = &self.lens else { return straight };
+        let view = self.view();
+        let [right, up] = lens.sample(u());
+        let d = straight.ray.d;
+        let per_t = d.dot(view.forward);
+        // Where the straight ray leaves the plane of the lens, and where it is sharp.
+        let start = straight.ray.o - d * (view.clip_near / per_t);
+        let sharp = start + d * (lens.focus / per_t);
+        let o = start + view.right * right + view.up * up;
+        let through = (sharp - o).normalize();
+        CameraRay { ray: view.clipped(o, through), ..straight }
+    }
+
+    /// What the depth pass holds of `p`: its distance along the axis, or from a panorama.
+    pub fn depth(&self, p: Vec3) -> f32 {
+        match &self.projection {
+            Projection::Panorama(camera) => (p - camera.view.origin).length(),
+            _ => self.view().depth(p),
         }
     }
 
     /// Where it stands.
     pub fn view(&self) -> &View {
-        match self {
-            Self::Perspective(camera) => &camera.view,
-            Self::Orthographic(camera) => &camera.view,
+        match &self.projection {
+            Projection::Perspective(camera) => &camera.view,
+            Projection::Orthographic(camera) => &camera.view,
+            Projection::Panorama(camera) => &camera.view,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All rays of a pixel meet at the distance in focus, and start on the lens.
+    #[test]
+    fn rays_meet_where_it_is_sharp() {
+        let view = View {
+            origin: Vec3::new(0.0, 0.0, 5.0),
+            right: Vec3::X,
+            up: Vec3::Y,
+            forward: Vec3::NEG_Z,
+            clip_near: 0.0,
+            clip_far: 100.0,
+        };
+        let perspective =
+            Perspective { view, tan_half_x: 1.0, tan_half_y: 0.5, center: [0.1, 0.0], size: [200.0, 100.0] };
+        let orthographic =
+            Orthographic { view, half_width: 2.0, half_height: 1.0, center: [0.0; 2], size: [200.0, 100.0] };
+        let lens = Some(Lens { radius: 0.25, focus: 3.0, blades: 0, rotation: 0.0, ratio: 1.0 });
+        for projection in [Projection::Perspective(perspective), Projection::Orthographic(orthographic)] {
+            let camera = Camera { projection, lens, corner: [10.0, 20.0] };
+            let pinhole = camera.ray(30.0, 7.0).ray;
+            let sharp = pinhole.at(3.0 / pinhole.d.dot(view.forward));
+            for u in [[0.1, 0.9], [0.5, 0.2], [0.99, 0.01]] {
+                let ray = camera.lens_ray(30.0, 7.0, || u).ray;
+                assert!((ray.o - pinhole.o).length() <= 0.2501);
+                let t = (sharp - ray.o).dot(ray.d);
+                assert!((ray.at(t) - sharp).length() < 1e-5);
+            }
+            let without = Camera { lens: None, ..camera };
+            assert_eq!(without.lens_ray(30.0, 7.0, || panic!("no lens, no sample")).ray, pinhole);
+            assert_eq!(Camera { corner: [0.0; 2], ..without }.ray(40.0, 27.0).ray, pinhole);
         }
     }
 }

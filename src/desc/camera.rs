@@ -40,6 +40,19 @@ pub struct LensDesc {
     pub aperture_radius: f64,
     /// Distance along the axis at which the picture is sharp, metres.
     pub focus_distance: f64,
+    /// Blades of the aperture; fewer than 3 make it round.
+    pub blades: u32,
+    /// How far the blades are turned, radians counter-clockwise as the camera sees.
+    pub rotation: f64,
+    /// Height of the aperture over its width: an anamorphic lens has more than 1.
+    pub ratio: f64,
+}
+
+impl LensDesc {
+    /// A round aperture.
+    pub const fn round(aperture_radius: f64, focus_distance: f64) -> Self {
+        Self { aperture_radius, focus_distance, blades: 0, rotation: 0.0, ratio: 1.0 }
+    }
 }
 
 /// How a camera projects.
@@ -59,5 +72,12 @@ pub enum ProjectionDesc {
         half_width: f64,
         /// Half of the height that is seen, in metres.
         half_height: f64,
+    },
+    /// All around: longitude across the picture, latitude up, Cycles' equirectangular panorama.
+    Equirectangular {
+        /// Longitudes of the left and right edge, radians; 0 is ahead, to the right is positive.
+        longitude: [f64; 2],
+        /// Latitudes of the lower and upper edge, radians; up is positive.
+        latitude: [f64; 2],
     },
 }

@@ -10,7 +10,7 @@ pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
     let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
     let Some(it) = first_opaque(scene, camera_ray.ray) else { return FirstHit::BACKGROUND };
     FirstHit {
-        depth: scene.camera.view().depth(it.p),
+        depth: scene.camera.depth(it.p),
         position: (it.p.as_dvec3() + scene.origin).as_vec3(),
         object_index: scene.ids.objects[it.instance as usize].index as f32,
         material_index: scene.ids.materials[it.material as usize].index as f32,

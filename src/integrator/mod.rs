@@ -21,7 +21,8 @@ use crate::settings::{Integrator, Settings};
 /// the pixel filter gives it.
 pub fn sample(scene: &Scene, settings: &Settings, sampler: &Sampler, x: u32, y: u32) -> (PixelSample, f32) {
     let (dx, dy, weight) = settings.filter.sample(sampler.get_2d(Dimension::PIXEL));
-    let camera_ray = scene.camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy);
+    let on_lens = || sampler.get_2d(Dimension::LENS);
+    let camera_ray = scene.camera.lens_ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, on_lens);
     let cone = RayCone { width: camera_ray.width, spread: camera_ray.spread };
     let mut sample = match settings.integrator {
         Integrator::Path => path::trace(scene, sampler, camera_ray.ray, cone, settings, settings.max_bounces),

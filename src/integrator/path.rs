@@ -238,7 +238,9 @@ fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
         match &path.last {
             None if light.rules.seen.camera => {
                 sample.environment += path.beta * le;
-                add_unscattered(sample, &light.rules, path.beta * le);
+                if !scene.film_transparent {
+                    add_unscattered(sample, &light.rules, path.beta * le);
+                }
             }
             None => {}
             Some(last) => {

@@ -46,6 +46,8 @@ pub struct Scene {
     pub lights: LightSet,
     /// True where the camera sees a dome; else what lies behind everything has alpha 0.
     pub background_visible: bool,
+    /// True where Combined lacks what lies behind everything.
+    pub film_transparent: bool,
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,

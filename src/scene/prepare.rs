@@ -56,9 +56,10 @@ pub struct Prepared {
 pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
-    let (camera_desc, size) = camera::choose(&desc, view, &mut warnings)?;
+    let (camera_desc, whole) = camera::choose(&desc, view, &mut warnings)?;
+    let size = cropped(&desc, whole)?;
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
-    let camera = camera::prepare(&camera_desc, size, origin);
+    let camera = camera::prepare(&camera_desc, &desc.render, whole, origin);
 
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
@@ -82,7 +83,8 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         Vec::new()
     };
     let shows = |light: &Light| light.rules.seen.camera && matches!(light.emitter, AnyEmitter::Dome(_));
-    let background_visible = lights.iter().any(shows);
+    let film_transparent = desc.render.film_transparent;
+    let background_visible = !film_transparent && lights.iter().any(shows);
     let by = match settings.light_selection {
         LightSelection::Tree => Strategy::Tree,
         LightSelection::Power => Strategy::Power,
@@ -99,6 +101,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         effects,
         lights,
         background_visible,
+        film_transparent,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         meshes: geometry.meshes,
@@ -107,6 +110,18 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         textures,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+/// Size of the part of a picture of `whole` that is wanted.
+fn cropped(desc: &SceneDesc, whole: [u32; 2]) -> Result<[u32; 2]> {
+    let Some([left, top, width, height]) = desc.render.crop else { return Ok(whole) };
+    let fits = |start: u32, size: u32, whole: u32| size > 0 && start.checked_add(size).is_some_and(|end| end <= whole);
+    if fits(left, width, whole[0]) && fits(top, height, whole[1]) {
+        return Ok([width, height]);
+    }
+    let [w, h] = whole;
+    let what = format!("the part of {width}x{height} pixels at ({left}, {top}) is not within the picture of {w}x{h}");
+    Err(Error::invalid(&desc.place, what))
 }
 
 /// One warning for passes that the integrator does not compute.

@@ -49,9 +49,25 @@ def _focus(obj, dof):
 def render(scene, size):
     """Settings that are the scene's own."""
     cycles = getattr(scene, "cycles", None)
-    return {
+    result = {
         "size": list(size),
         "pixel_aspect": [scene.render.pixel_aspect_x, scene.render.pixel_aspect_y],
         "exposure": getattr(cycles, "film_exposure", 1.0),
         "film_transparent": scene.render.film_transparent,
     }
+    rectangle = border(scene, size)
+    if rectangle is not None:
+        result["border"] = rectangle
+    return result
+
+
+def border(scene, size):
+    """The render border in pixels from the lower left corner (left, lower, right, upper), or None."""
+    render = scene.render
+    if not render.use_border:
+        return None
+    edges = (render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y)
+    left, lower, right, upper = (int(edge * size[i % 2]) for i, edge in enumerate(edges))
+    if right <= left or upper <= lower:
+        raise ValueError("the render border holds no pixel: draw it larger, or clear it (Ctrl Alt B)")
+    return [left, lower, right, upper]

@@ -1,5 +1,7 @@
 //! The camera: Blender's lens, sensor and shift.
 
+use std::f64::consts::PI;
+
 use super::document::{CameraData, RenderData};
 use super::transform::affine;
 use crate::desc::{CameraDesc, LensDesc, ProjectionDesc};
@@ -29,15 +31,30 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
     let projection = match data.r#type.as_str() {
         "ORTHO" => orthographic,
         "PERSP" => perspective(),
+        "PANO" if data.panorama.panorama_type == "EQUIRECTANGULAR" => ProjectionDesc::Equirectangular {
+            longitude: [data.panorama.longitude_min, data.panorama.longitude_max],
+            latitude: [data.panorama.latitude_min, data.panorama.latitude_max],
+        },
+        "PANO" => {
+            let kind = &data.panorama.panorama_type;
+            warnings.push(&place, format!("{kind} panoramas are not supported: taken as equirectangular"));
+            ProjectionDesc::Equirectangular { longitude: [-PI, PI], latitude: [-0.5 * PI, 0.5 * PI] }
+        }
         other => {
-            warnings.push(&place, format!("cameras of the type {other} are not rendered yet: taken as a perspective one"));
+            warnings.push(&place, format!("a camera of the unknown type {other}: taken as a perspective one"));
             perspective()
         }
     };
     let lens = data.dof.map(|dof| {
         // An orthographic camera's aperture is that of a lens of 1000 mm… of Cycles: 1 / (2 f).
         let focal = if data.r#type == "ORTHO" { 1.0 } else { 1e-3 * data.lens };
-        LensDesc { aperture_radius: focal / (2.0 * dof.fstop), focus_distance: dof.distance }
+        LensDesc {
+            aperture_radius: focal / (2.0 * dof.fstop),
+            focus_distance: dof.distance,
+            blades: dof.blades,
+            rotation: dof.rotation,
+            ratio: dof.ratio,
+        }
     });
     CameraDesc {
         name: data.name.as_str().into(),
@@ -56,6 +73,7 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
 
 #[cfg(test)]
 mod tests {
+    use super::super::document::DofData;
     use super::*;
 
     fn made(data: CameraData, size: [u32; 2]) -> CameraDesc {
@@ -90,7 +108,7 @@ mod tests {
     /// Measured: a blur of a lens of 50 mm at f/2.8.
     #[test]
     fn the_aperture_is_that_of_the_lens() {
-        let dof = Some(super::super::document::DofData { distance: 3.0, fstop: 2.8 });
+        let dof = Some(DofData { distance: 3.0, fstop: 2.8, ..DofData::default() });
         let lens = made(CameraData { dof, ..CameraData::default() }, [100, 100]).lens.unwrap();
         assert!((lens.aperture_radius - 0.05 / 5.6).abs() < 1e-12);
         assert_eq!(lens.focus_distance, 3.0);

@@ -4,10 +4,12 @@
 //! copies properties by their names in Blender's Python. What is absent has Blender's own default.
 
 use std::collections::HashMap;
+use std::f64::consts::PI;
 
 use serde::Deserialize;
 
 use super::nodes::TreeData;
+use crate::desc::RenderDesc;
 
 /// A scene at one frame, for one view layer.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -39,6 +41,8 @@ pub struct RenderData {
     pub size: [u32; 2],
     /// `pixel_aspect_x`, `pixel_aspect_y`.
     pub pixel_aspect: [f64; 2],
+    /// The border, in pixels from the lower left corner: left, lower, right and upper edge.
+    pub border: Option<[u32; 4]>,
     /// Factor of the picture's radiance (`cycles.film_exposure`).
     pub exposure: f64,
     /// The world is not seen by the camera, alpha is 0 there.
@@ -47,7 +51,25 @@ pub struct RenderData {
 
 impl Default for RenderData {
     fn default() -> Self {
-        Self { size: [1920, 1080], pixel_aspect: [1.0; 2], exposure: 1.0, film_transparent: false }
+        Self { size: [1920, 1080], pixel_aspect: [1.0; 2], border: None, exposure: 1.0, film_transparent: false }
+    }
+}
+
+impl RenderData {
+    /// The same in the engine's terms.
+    pub fn desc(&self) -> RenderDesc {
+        let [x, y] = self.pixel_aspect;
+        let aspect = x / y;
+        RenderDesc {
+            resolution: Some(self.size),
+            pixel_aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
+            crop: self.border.map(|[left, lower, right, upper]| {
+                let height = self.size[1];
+                [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
+            }),
+            film_transparent: self.film_transparent,
+            ..RenderDesc::default()
+        }
     }
 }
 
@@ -81,6 +103,8 @@ pub struct CameraData {
     pub ortho_scale: f64,
     /// Depth of field; `None` where it is off.
     pub dof: Option<DofData>,
+    /// What panoramic cameras have.
+    pub panorama: PanoramaData,
 }
 
 impl Default for CameraData {
@@ -99,17 +123,59 @@ impl Default for CameraData {
             clip_end: 1000.0,
             ortho_scale: 6.0,
             dof: None,
+            panorama: PanoramaData::default(),
         }
     }
 }
 
 /// A camera's depth of field.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default)]
 pub struct DofData {
     /// Metres along the axis, that of the focus object where there is one.
     pub distance: f64,
     /// `aperture_fstop`.
     pub fstop: f64,
+    /// `aperture_blades`; fewer than 3 are round.
+    pub blades: u32,
+    /// `aperture_ratio`.
+    pub ratio: f64,
+    /// `aperture_rotation`, radians.
+    pub rotation: f64,
+}
+
+impl Default for DofData {
+    fn default() -> Self {
+        Self { distance: 10.0, fstop: 2.8, blades: 0, ratio: 1.0, rotation: 0.0 }
+    }
+}
+
+/// A panoramic camera's own settings.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default)]
+pub struct PanoramaData {
+    /// `EQUIRECTANGULAR` and others.
+    pub panorama_type: String,
+    /// Radians.
+    pub latitude_min: f64,
+    /// Radians.
+    pub latitude_max: f64,
+    /// Radians.
+    pub longitude_min: f64,
+    /// Radians.
+    pub longitude_max: f64,
+}
+
+impl Default for PanoramaData {
+    fn default() -> Self {
+        Self {
+            panorama_type: "EQUIRECTANGULAR".into(),
+            latitude_min: -0.5 * PI,
+            latitude_max: 0.5 * PI,
+            longitude_min: -PI,
+            longitude_max: PI,
+        }
+    }
 }
 
 /// The world.
@@ -208,12 +274,12 @@ impl Default for LightData {
             radius: 0.0,
             use_soft_falloff: true,
             angle: 0.009_18,
-            spot_size: std::f64::consts::FRAC_PI_4,
+            spot_size: 0.25 * PI,
             spot_blend: 0.15,
             shape: "SQUARE".into(),
             size: 0.25,
             size_y: 0.25,
-            spread: std::f64::consts::PI,
+            spread: PI,
             is_portal: false,
             use_shadow: true,
             nodes: None,

@@ -109,7 +109,7 @@ impl BlenderScene {
     pub fn scene(&self, warnings: &mut Warnings) -> Result<SceneDesc> {
         let (document, place) = (&self.document, self.place());
         let mut desc = SceneDesc { place: place.clone(), ..SceneDesc::default() };
-        desc.render.resolution = Some(document.render.size);
+        desc.render = document.render.desc();
         if let Some(data) = &document.camera {
             desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
             desc.render.camera = Some(data.name.as_str().into());
@@ -194,7 +194,7 @@ impl BlenderScene {
             desc.lights.push(light);
         }
         if let Some(world) = &document.world {
-            desc.lights.extend(world::dome(world, &document.render, images, &desc.place, warnings));
+            desc.lights.extend(world::dome(world, images, &desc.place, warnings));
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The world, as a dome.
 
-use super::document::{RenderData, WorldData};
+use super::document::WorldData;
 use super::image::Images;
 use super::nodes;
-use crate::desc::{LightDesc, LightKind, LightLinks, Visibility};
+use crate::desc::{LightDesc, LightKind, LightLinks};
 use crate::error::{Place, Warnings};
 use crate::math::{DAffine3, DMat3, DVec3};
 
@@ -21,7 +21,6 @@ pub struct WorldShader {
 /// The dome that `data` is; `None` for a black one.
 pub fn dome(
     data: &WorldData,
-    render: &RenderData,
     images: &mut Images<'_>,
     place: &Place,
     warnings: &mut Warnings,
@@ -39,8 +38,7 @@ pub fn dome(
     let upright = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y);
     let turn = shader.turn.transpose() * upright;
     let mut light = LightDesc::new(data.name.as_str(), place, DAffine3::from_mat3(turn), kind);
-    let visibility: Visibility = data.visibility.into();
-    light.visibility = Visibility { camera: visibility.camera && !render.film_transparent, ..visibility };
+    light.visibility = data.visibility.into();
     light.links = LightLinks {
         group: (!data.lightgroup.is_empty()).then(|| data.lightgroup.as_str().into()),
         ..LightLinks::default()

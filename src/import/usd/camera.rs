@@ -79,7 +79,7 @@ fn lens(values: &Values<'_>, focal_length: f64) -> Option<LensDesc> {
     values.warn("depth of field is not rendered yet: everything is sharp");
     let meters = values.reading.meters;
     let aperture_radius = 0.5 * focal_length * TENTH * meters / f_stop;
-    Some(LensDesc { aperture_radius, focus_distance: focus * meters })
+    Some(LensDesc::round(aperture_radius, focus * meters))
 }
 
 /// When the shutter opens and closes.

@@ -47,6 +47,7 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
             .map_or_else(|| resolution(&values), resolution),
         passes: passes(reading, &products),
         product: name.map(Into::into),
+        ..RenderDesc::default()
     }
 }
 

@@ -1,8 +1,8 @@
 //! The camera that was asked for, moved to render space.
 
 use super::View;
-use crate::camera::{self, Camera, Orthographic, Perspective};
-use crate::desc::{CameraDesc, ProjectionDesc, SceneDesc};
+use crate::camera::{self, Camera, Lens, Orthographic, Panorama, Perspective, Projection};
+use crate::desc::{CameraDesc, LensDesc, ProjectionDesc, RenderDesc, SceneDesc};
 use crate::error::{Error, Result, Warnings};
 use crate::math::DVec3;
 use crate::scene::framing::framing_camera;
@@ -47,6 +47,9 @@ fn aspect_of(camera: &CameraDesc) -> Option<f64> {
     let aspect = match camera.projection {
         ProjectionDesc::Perspective { aspect, .. } => aspect?,
         ProjectionDesc::Orthographic { half_width, half_height } => half_width / half_height,
+        ProjectionDesc::Equirectangular { longitude, latitude } => {
+            (longitude[1] - longitude[0]) / (latitude[1] - latitude[0])
+        }
     };
     (aspect.is_finite() && aspect > 0.0).then_some(aspect)
 }
@@ -59,6 +62,9 @@ fn usable(camera: CameraDesc, desc: &SceneDesc, size: [u32; 2], warnings: &mut W
         ProjectionDesc::Orthographic { half_width, half_height } => {
             half_width > 0.0 && half_height > 0.0 && (half_width + half_height).is_finite()
         }
+        ProjectionDesc::Equirectangular { longitude: [west, east], latitude: [south, north] } => {
+            (west + east + south + north).is_finite()
+        }
     };
     let shifted = camera.shift.iter().all(|shift| shift.is_finite());
     if finite && projects && shifted && camera.clip_near >= 0.0 && camera.clip_far > camera.clip_near {
@@ -70,8 +76,8 @@ fn usable(camera: CameraDesc, desc: &SceneDesc, size: [u32; 2], warnings: &mut W
     framing_camera(desc, f64::from(size[0]) / f64::from(size[1]))
 }
 
-/// `desc` in render space.
-pub fn prepare(desc: &CameraDesc, size: [u32; 2], origin: DVec3) -> Camera {
+/// `desc` in render space; `size` is that of the whole picture, of which `render` may want a part.
+pub fn prepare(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
     // Axes by Gram-Schmidt from the direction of view, so that scale and shear don't matter.
     let m = desc.transform.matrix3;
     let forward = -m.z_axis.normalize();
@@ -86,22 +92,45 @@ pub fn prepare(desc: &CameraDesc, size: [u32; 2], origin: DVec3) -> Camera {
         clip_near: desc.clip_near as f32,
         clip_far: desc.clip_far as f32,
     };
-    let size_f = size.map(|n| n as f32);
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let aspect = f64::from(size[0]) / f64::from(size[1]) * render.pixel_aspect;
+    let corner = render.crop.map_or([0.0; 2], |[left, top, ..]| [left as f32, top as f32]);
+    let projection = projection(desc, view, size.map(|n| n as f32), aspect);
+    let lens = desc.lens.and_then(|lens| usable_lens(&lens));
+    let lens = lens.filter(|_| !matches!(projection, Projection::Panorama(_)));
+    Camera { projection, lens, corner }
+}
+
+fn projection(desc: &CameraDesc, view: camera::View, size: [f32; 2], aspect: f64) -> Projection {
     match desc.projection {
         ProjectionDesc::Perspective { fov_y, aspect: framed } => {
             let tan_y = (0.5 * fov_y).tan();
             let tan_x = tan_y * framed.unwrap_or(aspect);
             let (x, y) = fit(tan_x, tan_y, aspect);
             let center = center(desc.shift, [tan_x, tan_y]);
-            Camera::Perspective(Perspective { view, tan_half_x: x, tan_half_y: y, center, size: size_f })
+            Projection::Perspective(Perspective { view, tan_half_x: x, tan_half_y: y, center, size })
         }
         ProjectionDesc::Orthographic { half_width, half_height } => {
             let (x, y) = fit(half_width, half_height, aspect);
             let center = center(desc.shift, [half_width, half_height]);
-            Camera::Orthographic(Orthographic { view, half_width: x, half_height: y, center, size: size_f })
+            Projection::Orthographic(Orthographic { view, half_width: x, half_height: y, center, size })
+        }
+        ProjectionDesc::Equirectangular { longitude, latitude } => {
+            let edges = |edges: [f64; 2]| edges.map(|edge| edge as f32);
+            Projection::Panorama(Panorama { view, longitude: edges(longitude), latitude: edges(latitude), size })
         }
     }
+}
+
+/// A lens; `None` for one that blurs nothing.
+fn usable_lens(desc: &LensDesc) -> Option<Lens> {
+    let positive = |x: f64| x.is_finite() && x > 0.0;
+    (positive(desc.aperture_radius) && positive(desc.focus_distance)).then(|| Lens {
+        radius: desc.aperture_radius as f32,
+        focus: desc.focus_distance as f32,
+        blades: desc.blades,
+        rotation: if desc.rotation.is_finite() { desc.rotation as f32 } else { 0.0 },
+        ratio: if positive(desc.ratio) { desc.ratio as f32 } else { 1.0 },
+    })
 }
 
 /// Where the picture's centre is, given half of the authored frame.
@@ -150,7 +179,7 @@ mod tests {
         let fov_y = 2.0 * (0.5 * 15.2908_f64 / 50.0).atan();
         let projection = ProjectionDesc::Perspective { fov_y, aspect: Some(20.955 / 15.2908) };
         let at = |size: [u32; 2], x: f32, y: f32| {
-            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), size, DVec3::ZERO).ray(x, y).ray.d;
+            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), &RenderDesc::default(), size, DVec3::ZERO).ray(x, y).ray.d;
             [d.x / -d.z, d.y / -d.z]
         };
         let near = |found: [f32; 2], x: f32, y: f32| {
@@ -166,7 +195,7 @@ mod tests {
     #[test]
     fn parallel_rays_are_shifted_by_the_frame() {
         let projection = ProjectionDesc::Orthographic { half_width: 2.0, half_height: 1.0 };
-        let ray = prepare(&desc(projection, [0.25, -0.5]), [400, 200], DVec3::ZERO).ray(200.0, 100.0).ray;
+        let ray = prepare(&desc(projection, [0.25, -0.5]), &RenderDesc::default(), [400, 200], DVec3::ZERO).ray(200.0, 100.0).ray;
         assert_eq!((ray.o, ray.d), (Vec3::new(1.0, -1.0, 0.0), Vec3::NEG_Z));
     }
 }
