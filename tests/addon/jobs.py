@@ -56,6 +56,9 @@ def _render(path, view_layer_passes=()):
         settings.media_type = "MULTI_LAYER_IMAGE"
     settings.file_format = "OPEN_EXR_MULTILAYER"
     settings.color_depth = "32"
+    if hasattr(settings, "use_exr_interleave"):
+        # Blender 5.0.1 can't write parts of pixels that are not square.
+        settings.use_exr_interleave = scene.render.pixel_aspect_x != scene.render.pixel_aspect_y
     scene.render.filepath = path
     bpy.ops.render.render(write_still=True)
 
@@ -93,3 +96,35 @@ def mesh_time(count):
         mesh.hand_over(scene, 1, evaluated.data)
         times.append(time.perf_counter() - start)
     return [min(times), len(evaluated.data.loop_triangles)]
+
+
+def side_by_side(name, folder, spp=256, size=64):
+    """The scene `name` by both engines: paths of the two EXR files."""
+    import scenes
+
+    getattr(scenes, name)()
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = int(size) * 4 // 3, int(size)
+    scene.render.resolution_percentage = 100
+    scene.render.filter_size = 1.5
+    for layer in scene.view_layers:
+        for box in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_diffuse_direct",
+                    "use_pass_diffuse_color", "use_pass_ambient_occlusion", "use_pass_environment"):
+            setattr(layer, box, True)
+        layer.penumbra.use_pass_shadow = True
+    for obj in scene.objects:
+        for holder in (obj, getattr(obj, "cycles", None)):
+            if hasattr(holder, "shadow_terminator_geometry_offset"):
+                holder.shadow_terminator_geometry_offset = 0.0
+    cycles = scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = int(spp), False, False
+    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, 0.0
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
+    cycles.pixel_filter_type = "BOX"
+    scene.penumbra.spp, scene.penumbra.max_bounces = int(spp), 4
+    paths = []
+    for engine in ("CYCLES", "PENUMBRA"):
+        scene.render.engine = engine
+        paths.append(os.path.join(folder, f"{name}-{engine.lower()}.exr"))
+        _render(paths[-1])
+    return paths

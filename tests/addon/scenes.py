@@ -1,0 +1,242 @@
+"""Scenes made by script, for Penumbra and Cycles alike; each is a function of this file."""
+
+import math
+
+import bpy
+
+
+def add(name, data, **properties):
+    """Adds an object with these properties."""
+    obj = bpy.data.objects.new(name, data)
+    for key, value in properties.items():
+        setattr(obj, key, value)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def lamp(kind, location=(0.0, 0.0, 3.0), rotation=(0.0, 0.0, 0.0), **properties):
+    """Adds a lamp."""
+    light = bpy.data.lights.new(kind, kind)
+    for key, value in properties.items():
+        setattr(light, key, value)
+    return add(kind, light, location=location, rotation_euler=rotation)
+
+
+def material(name, node_type="ShaderNodeBsdfPrincipled", **inputs):
+    """A material of one shader."""
+    result = bpy.data.materials.new(name)
+    result.use_nodes = True
+    tree = result.node_tree
+    tree.nodes.clear()
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    shader = tree.nodes.new(node_type)
+    for key, value in inputs.items():
+        shader.inputs[key.replace("_", " ")].default_value = value
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    return result
+
+
+def world(strength, color=(1.0, 1.0, 1.0)):
+    """A constant world."""
+    scene = bpy.context.scene
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    background = scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*color, 1.0)
+    background.inputs["Strength"].default_value = strength
+
+
+def room(floor=None):
+    """A floor and a cube, diffuse; the camera looks down at them."""
+    plain = floor or material("Plain", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.5, 0.4, 1.0))
+    for create, values in ((bpy.ops.mesh.primitive_plane_add, {"size": 12}),
+                           (bpy.ops.mesh.primitive_cube_add, {"size": 1, "location": (0, 0, 0.5)})):
+        create(**values)
+        bpy.context.object.data.materials.append(plain)
+    data = bpy.data.cameras.new("Camera")
+    camera = add("Camera", data, location=(0, -6, 4), rotation_euler=(math.radians(57), 0, 0))
+    bpy.context.scene.camera = camera
+    world(0.0)
+    return camera
+
+
+def point_soft():
+    room()
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4)
+
+
+def point_sphere():
+    room()
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4, use_soft_falloff=False)
+
+
+def point_delta():
+    room()
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.0)
+
+
+def spot():
+    room()
+    lamp("SPOT", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=300.0, shadow_soft_size=0.2, spot_size=1.2, spot_blend=0.4)
+
+
+def sun():
+    room()
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.2, color=(1.0, 0.8, 0.6))
+
+
+def area_square():
+    room()
+    lamp("AREA", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=100.0, size=1.0)
+
+
+def area_ellipse():
+    room()
+    obj = lamp("AREA", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=100.0, shape="ELLIPSE", size=1.0, size_y=0.5)
+    obj.scale = (1.5, 0.8, 1.0)
+
+
+def area_spread():
+    room()
+    lamp("AREA", (0.0, 0.0, 3.0), energy=100.0, shape="RECTANGLE", size=1.0, size_y=2.0, spread=math.radians(60))
+
+
+def falloff_linear():
+    room()
+    obj = lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.1)
+    obj.data.use_nodes = True
+    tree = obj.data.node_tree
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 0.5
+    falloff.inputs["Smooth"].default_value = 0.2
+    tree.links.new(falloff.outputs["Linear"], emission.inputs["Strength"])
+    black_body = tree.nodes.new("ShaderNodeBlackbody")
+    black_body.inputs["Temperature"].default_value = 3500.0
+    tree.links.new(black_body.outputs[0], emission.inputs["Color"])
+
+
+def world_constant():
+    room()
+    world(0.7, (0.4, 0.6, 1.0))
+
+
+def world_image():
+    room()
+    world(1.0)
+    image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
+    pixels = []
+    for y in range(32):
+        for x in range(64):
+            glow = math.exp(-((x - 20) ** 2 + (y - 22) ** 2) / 20.0)
+            pixels += [0.2 + 8.0 * glow, 0.3 + 5.0 * glow, 0.5 + 2.0 * glow, 1.0]
+    image.pixels.foreach_set(pixels)
+    image.update()
+    tree = bpy.context.scene.world.node_tree
+    environment = tree.nodes.new("ShaderNodeTexEnvironment")
+    environment.image = image
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Rotation"].default_value = (0.2, 0.1, 0.7)
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs[0], environment.inputs["Vector"])
+    tree.links.new(environment.outputs[0], tree.nodes["Background"].inputs["Color"])
+
+
+def mesh_light():
+    room()
+    bpy.ops.mesh.primitive_plane_add(size=1.0, location=(1.2, -0.8, 2.5))
+    glow = material("Glow", "ShaderNodeEmission", Strength=10.0)
+    bpy.context.object.data.materials.append(glow)
+
+
+def principled():
+    room(material("Principled", Base_Color=(0.6, 0.2, 0.1, 1.0), Roughness=0.4))
+    lamp("AREA", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=100.0, size=1.0)
+    world(0.3)
+
+
+def metal():
+    room(material("Metal", Base_Color=(0.9, 0.6, 0.3, 1.0), Roughness=0.5, Metallic=1.0))
+    lamp("AREA", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=100.0, size=1.0)
+    world(0.3)
+
+
+def see_through():
+    room()
+    mixed = material("Pane", Base_Color=(0.1, 0.5, 0.2, 1.0), Alpha=0.4)
+    bpy.context.object.data.materials[0] = mixed
+    lamp("AREA", (1.2, -0.8, 2.5), (0.3, 0.4, 0.0), energy=100.0, size=1.0)
+
+
+def depth_of_field():
+    camera = room()
+    camera.data.dof.use_dof = True
+    camera.data.dof.focus_distance = 7.0
+    camera.data.dof.aperture_fstop = 0.1
+    camera.data.dof.aperture_blades = 5
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4)
+
+
+def panorama():
+    camera = room()
+    camera.location = (0.2, -1.5, 1.2)
+    camera.rotation_euler = (math.radians(80), 0.0, 0.3)
+    camera.data.type = "PANO"
+    source = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
+    source.panorama_type = "EQUIRECTANGULAR"
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4)
+    world(0.2)
+
+
+def shifted():
+    camera = room()
+    camera.data.shift_x, camera.data.shift_y = 0.1, -0.05
+    camera.data.sensor_fit = "VERTICAL"
+    bpy.context.scene.render.pixel_aspect_x = 1.5
+    lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4)
+
+
+def instances():
+    room()
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.15)
+    ball = bpy.context.object
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=4, location=(0, 0, 0.3))
+    grid = bpy.context.object
+    ball.parent = grid
+    grid.instance_type = "VERTS"
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def curve_and_text():
+    room()
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    curve.dimensions = "3D"
+    curve.bevel_depth = 0.08
+    spline = curve.splines.new("BEZIER")
+    spline.bezier_points.add(2)
+    for point, co in zip(spline.bezier_points, ((-2, -1, 0.3), (-1, 0, 1.2), (-2, 1, 0.3))):
+        point.co = co
+        point.handle_left_type = point.handle_right_type = "AUTO"
+    add("Curve", curve)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude = "Penumbra", 0.05
+    add("Text", text, location=(-1.5, -2.0, 0.2), rotation_euler=(0.9, 0.0, 0.0))
+    meta = bpy.data.metaballs.new("Meta")
+    meta.elements.new().co = (0.0, 0.0, 0.0)
+    add("Meta", meta, location=(2.0, 0.0, 0.6), scale=(0.5, 0.5, 0.5))
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def textured():
+    room()
+    image = bpy.data.images.new("checks", 32, 32)
+    image.generated_type = "COLOR_GRID"
+    floor = material("Floor", "ShaderNodeBsdfDiffuse")
+    tree = floor.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    texture.interpolation = "Closest"
+    tree.links.new(texture.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    bpy.data.objects["Plane"].data.materials[0] = floor
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
