@@ -50,7 +50,7 @@ def room(floor=None):
     """A floor and a cube, diffuse; the camera looks down at them."""
     plain = floor or material("Plain", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.5, 0.4, 1.0))
     for create, values in ((bpy.ops.mesh.primitive_plane_add, {"size": 12}),
-                           (bpy.ops.mesh.primitive_cube_add, {"size": 1, "location": (0, 0, 0.5)})):
+                           (bpy.ops.mesh.primitive_cube_add, {"size": 1, "location": (0, 0, 0.51)})):
         create(**values)
         bpy.context.object.data.materials.append(plain)
     data = bpy.data.cameras.new("Camera")

@@ -69,7 +69,8 @@ class Exporter:
 
     def _object(self, obj, instance):
         """Index of the object's record; None for one without a shape."""
-        key = obj.as_pointer()
+        # Not by the object's address: curves, texts and metaballs come as meshes of one passing object.
+        key = (obj.name_full, obj.data.as_pointer())
         if key in self._object_index:
             return self._object_index[key]
         shape = self._shape(obj)
@@ -96,7 +97,7 @@ class Exporter:
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
         own = obj.type == "MESH"
-        key = (obj.data if own else obj).as_pointer()
+        key = obj.data.as_pointer()
         if key in self._meshes:
             return key
         data = obj.data if own else obj.to_mesh()
