@@ -4,13 +4,16 @@
     cargo build --release --ignore-rust-version
     target/test-venv/bin/python benches/usd.py [--penumbra FILE] [--rounds N]
 
-prints, for each stage, the seconds of `penumbra info` as a whole process, of OpenUSD for opening the stage and copying
-the same arrays or world transforms (once in a process of its own, start and import not counted), their ratio, and
-Penumbra's peak memory; then the seconds to the first ray: a whole `penumbra render` of one sample on 8 × 8 pixels.
+prints, for each stage, from inside a process of its own, start and exit not counted: the seconds in which the file
+becomes a scene description (`penumbra info --json` tells), those in which OpenUSD opens it and copies the same arrays
+or world transforms, and their ratio. Then the same as whole processes, `penumbra info` beside Python with OpenUSD,
+Penumbra's peak memory, and the seconds to the first ray: a whole `penumbra render` of one sample on 8 × 8 pixels.
 Medians over rounds in turn.
 """
 
 import argparse
+import json
+import os
 import statistics
 import subprocess
 import sys
@@ -118,8 +121,11 @@ def main():
     options = parser.parse_args()
     if options.by_openusd:
         return print(seconds(lambda: by_openusd(options.by_openusd)))
-    program = lambda *args: subprocess.run([options.penumbra, *args], check=True, capture_output=True)
-    print("| stage | Penumbra, s | OpenUSD, s | ratio | MiB | first ray, s |\n|---|---|---|---|---|---|")
+    run = lambda *args: subprocess.run(args, check=True, capture_output=True, text=True).stdout
+    program = lambda *args: run(options.penumbra, *args)
+    print(f"load before: {os.getloadavg()[0]:.1f}\n")
+    print("| stage | Penumbra, s | OpenUSD, s | ratio | whole `info`, s | whole Python, s | MiB | first ray, s |")
+    print("|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         million(folder)
@@ -128,18 +134,21 @@ def main():
         references(folder, True)
         for file in ("million.usdc", "copies.usdc", "references.usda", "instances.usda"):
             path = folder / file
-            ours, theirs = [], []
+            rounds = []
             for _ in range(options.rounds):
-                ours.append(seconds(lambda: program("info", path)))
-                command = [sys.executable, __file__, "--by-openusd", path]
-                theirs.append(float(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
+                ours = json.loads(program("info", "--json", path))["read_s"]
+                whole = seconds(lambda: program("info", path))
+                start = time.perf_counter()
+                theirs = float(run(sys.executable, __file__, "--by-openusd", path))
+                rounds.append((ours, theirs, whole, time.perf_counter() - start))
             out = ("-o", folder / "out.exr", "--size", "8x8", "--spp", "1", "--progress", "none")
             first = statistics.median(seconds(lambda: program("render", path, *out)) for _ in range(3))
             once = [sys.executable, "-c", "import resource,subprocess,sys; subprocess.run(sys.argv[1:], capture_output=True);"
                     "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)", options.penumbra, "info", path]
             peak = int(subprocess.run([str(part) for part in once], capture_output=True, text=True).stdout) / 1024
-            ours, theirs = statistics.median(ours), statistics.median(theirs)
-            print(f"| {file} | {ours:.2f} | {theirs:.2f} | {ours / theirs:.2f} | {peak:.0f} | {first:.2f} |", flush=True)
+            ours, theirs, *wholes = map(statistics.median, zip(*rounds))
+            cells = [f"{ours:.3f}", f"{theirs:.3f}", f"{ours / theirs:.2f}", *(f"{whole:.2f}" for whole in wholes)]
+            print("|", " | ".join([file, *cells, f"{peak:.0f}", f"{first:.2f}"]), "|", flush=True)
 
 
 if __name__ == "__main__":

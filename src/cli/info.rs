@@ -3,6 +3,8 @@
 mod lights;
 mod values;
 
+use std::time::Instant;
+
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use penumbra::desc::{ProjectionDesc, SceneDesc};
 use penumbra::error::Warnings;
@@ -32,21 +34,27 @@ pub fn command() -> Command {
 }
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
+    let start = Instant::now();
     let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied())?;
-    let mut info = describe(&scene, &warnings);
+    let read_s = start.elapsed().as_secs_f64();
+    let is_json = args.get_flag("json");
+    let mut info = describe(&scene, &warnings, if is_json { usize::MAX } else { MOST_MESHES });
     if args.get_flag("values") {
         info["values"] = values::describe(&scene);
     }
-    if args.get_flag("json") {
+    if is_json {
+        info["read_s"] = json!(read_s);
         say::out(format!("{info:#}\n"));
     } else {
-        say::out(page(&info));
+        say::out(page(&info, scene.meshes.len()));
     }
+    // The process ends: to let go of a large scene piece by piece takes longer than to read a small one.
+    std::mem::forget(scene);
     Ok(Outcome::Done)
 }
 
-/// Everything that both forms of the report say.
-fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
+/// Everything that both forms of the report say, with at most `most` meshes.
+fn describe(scene: &SceneDesc, warnings: &Warnings, most: usize) -> Value {
     let triangles = |mesh: u32| scene.meshes[mesh as usize].triangles.len();
     let mut users = vec![0_u64; scene.meshes.len()];
     for instance in &scene.instances {
@@ -56,6 +64,7 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
         .meshes
         .iter()
         .zip(&users)
+        .take(most)
         .map(|(mesh, users)| {
             json!({
                 "name": &*mesh.name,
@@ -115,28 +124,25 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
 /// So many meshes are listed for people.
 const MOST_MESHES: usize = 100;
 
-/// The report for people.
-fn page(info: &Value) -> String {
+/// The report for people, on a scene of so many `meshes`.
+fn page(info: &Value, meshes: usize) -> String {
     let mut page = String::new();
     let mut line = |text: String| page += &(text + "\n");
     let list = |key: &str| info[key].as_array().map_or(&[][..], Vec::as_slice);
     line(info["scene"].as_str().unwrap_or_default().to_string());
     line(format!(
         "  {} triangles in {} meshes, {} when instanced by {} instances",
-        info["triangles"],
-        list("meshes").len(),
-        info["instanced_triangles"],
-        info["instances"]
+        info["triangles"], meshes, info["instanced_triangles"], info["instances"]
     ));
-    let meshes = list("meshes");
-    for mesh in meshes.iter().take(MOST_MESHES) {
+    let listed = list("meshes");
+    for mesh in listed {
         line(format!(
             "  mesh {}: {} points, {} triangles, {} instances",
             mesh["name"], mesh["points"], mesh["triangles"], mesh["instances"]
         ));
     }
-    if meshes.len() > MOST_MESHES {
-        line(format!("  and {} meshes more; --json lists all", meshes.len() - MOST_MESHES));
+    if meshes > listed.len() {
+        line(format!("  and {} meshes more; --json lists all", meshes - listed.len()));
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
     line(format!("  {} materials: {}", names.len(), names.join(", ")));

@@ -125,3 +125,55 @@ def Xform "Two" ( instanceable = true inherits = </_Bed> ) {
     assert_eq!(places, expected);
     assert_eq!(loaded.scene.meshes.len(), 1);
 }
+
+#[test]
+fn primitives_that_are_alike_share_a_mesh_and_each_is_told_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Cube "Fallback" { }
+def Cube "Same" { double size = 2 }
+def Cube "Large" { double size = 3 }
+def Cube "Red" { color3f[] primvars:displayColor = [(1, 0, 0)] }
+def Cylinder "Up" { uniform token axis = "Y" }
+def Cylinder "Too" { uniform token axis = "Y" }
+def Cylinder "Along" { uniform token axis = "X" }
+def Scope "Looks" {
+    def Material "Look" {
+        token outputs:surface.connect = </Looks/Look/S.outputs:surface>
+        def Shader "S" {
+            uniform token info:id = "UsdPreviewSurface"
+            color3f inputs:diffuseColor.connect = </Looks/Look/T.outputs:rgb>
+            token outputs:surface
+        }
+        def Shader "T" {
+            uniform token info:id = "UsdUVTexture"
+            asset inputs:file = @texel.png@
+            float2 inputs:st.connect = </Looks/Look/R.outputs:result>
+            float3 outputs:rgb
+        }
+        def Shader "R" {
+            uniform token info:id = "UsdPrimvarReader_float2"
+            string inputs:varname = "st"
+            float2 outputs:result
+        }
+    }
+}
+def Cube "Textured" ( prepend apiSchemas = ["MaterialBindingAPI"] ) { rel material:binding = </Looks/Look> }
+def Cube "Textured2" ( prepend apiSchemas = ["MaterialBindingAPI"] ) { rel material:binding = </Looks/Look> }
+"#;
+    std::fs::write(&path, text).unwrap();
+    image::RgbImage::new(1, 1).save(dir.path().join("texel.png")).unwrap();
+    let loaded = super::try_load(&path, &ImportOptions::default()).unwrap();
+    let mesh = |path: &str| loaded.one(path).mesh;
+    assert_eq!(mesh("/Fallback"), mesh("/Same"));
+    assert_eq!(mesh("/Up"), mesh("/Too"));
+    assert_eq!(mesh("/Textured"), mesh("/Textured2"));
+    let different = ["/Same", "/Large", "/Red", "/Up", "/Along", "/Textured"].map(mesh);
+    assert_eq!(BTreeSet::from(different).len(), different.len());
+    // Cubes have no UVs.
+    for path in ["/Textured:", "/Textured2:"] {
+        assert!(loaded.said_of(path).contains("primvar st, which is absent"), "{:#?}", loaded.said);
+    }
+}

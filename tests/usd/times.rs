@@ -55,3 +55,23 @@ fn what_deforms_while_a_shutter_is_open_is_kept() {
     assert_eq!(motion, [(-0.5, [1.0, 0.0, 3.5]), (0.5, [1.0, 0.0, 4.5])]);
     loaded.said_of("motion blur is not rendered yet");
 }
+
+/// Which operations a transform has is the same at all times, as OpenUSD has it.
+#[test]
+fn the_order_of_operations_is_read_without_a_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Cube "A" {
+    double3 xformOp:translate = (1, 2, 3)
+    double3 xformOp:translate:b = (10, 2, 3)
+    token[] xformOpOrder = ["xformOp:translate"]
+    token[] xformOpOrder.timeSamples = { 1: ["xformOp:translate:b"], 5: [] }
+}
+"#;
+    std::fs::write(&path, text).unwrap();
+    for options in [ImportOptions::default(), at_frame(1.0), at_frame(5.0)] {
+        assert_eq!(super::try_load(&path, &options).unwrap().origin("/A"), [1.0, 2.0, 3.0]);
+    }
+}

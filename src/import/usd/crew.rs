@@ -93,10 +93,14 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
     let (sender, parcels) = mpsc::channel();
     // With one thread there is no point in opening the stage twice.
     for _ in 0..if threads > 1 { threads } else { 0 } {
-        let crew = Crew { shares: shares.clone(), next: next.clone(), sender: sender.clone(), aside };
+        let (hold, held) = mpsc::channel();
+        let crew = Crew { shares: shares.clone(), next: next.clone(), sender: sender.clone(), aside, held };
         let (path, options) = (reading.place.file.as_deref().map(PathBuf::from), reading.options.clone());
         // Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
-        std::thread::spawn(move || path.map(|path| crew.work(&path, &options)));
+        let worker = std::thread::Builder::new().stack_size(super::STACK);
+        if worker.spawn(move || path.map(|path| crew.work(&path, &options))).is_ok() {
+            reading.crew.borrow_mut().push(hold);
+        }
     }
     drop(sender);
     for parcel in parcels {
@@ -140,6 +144,8 @@ struct Crew {
     next: Arc<AtomicUsize>,
     sender: mpsc::Sender<Parcel>,
     aside: fn(&str) -> bool,
+    /// Ends with the stage that the work is for.
+    held: mpsc::Receiver<()>,
 }
 
 impl Crew {
@@ -157,6 +163,7 @@ impl Crew {
         reading.warn_of_composition();
         let _ = self.sender.send(Parcel::Warnings(reading.warnings.take()));
         drop(self.sender);
+        let _ = self.held.recv();
     }
 }
 

@@ -127,7 +127,8 @@ impl<'r, 'a> Gatherer<'r, 'a> {
         let material = |bindings: Option<&Rc<Bindings>>, path: &Path| {
             bindings::bound(reading, bindings, shown.scope.as_ref(), path)
         };
-        let shape = if (self.aside)(&leaf.kind) {
+        reading.recall(&leaf.prim, &leaf.names, &leaf.kind.type_name);
+        let shape = if (self.aside)(&leaf.kind.name) {
             None
         } else {
             let primvars: Vec<Path> = leaf.primvars.iter().map(|p| p.attribute().path().clone()).collect();
@@ -146,7 +147,7 @@ impl<'r, 'a> Gatherer<'r, 'a> {
         };
         Some(Look {
             prim: leaf.prim.path().clone(),
-            kind: leaf.kind.clone(),
+            kind: leaf.kind.name.clone(),
             visible: leaf.visible,
             linked: leaf.linked,
             material: material(leaf.bindings.as_ref(), leaf.prim.path()),

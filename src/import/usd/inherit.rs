@@ -1,11 +1,12 @@
 //! What a prim takes from its ancestors, handed down from parent to child.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, TimeCode};
-use openusd_schemas::geom::{Primvar, PrimvarsAPI};
+use openusd_schemas::geom::Primvar;
 
 use super::bindings::Bindings;
 use super::kinds::Kind;
@@ -142,8 +143,7 @@ impl Context {
         if !names.iter().any(|name| name.starts_with("primvars:")) {
             return;
         }
-        let api = PrimvarsAPI::from_prim_unchecked(prim.clone());
-        match api.find_incrementally_inheritable_primvars(&self.primvars) {
+        match inheritable(prim, &self.primvars) {
             Ok(Some(primvars)) => self.primvars = Rc::new(primvars),
             Ok(None) => {}
             Err(error) => reading.warn(prim.path(), format!("{error}; its primvars are not inherited")),
@@ -182,7 +182,7 @@ pub(super) struct Clock<'r, 'a> {
     pub reading: &'r Reading<'a>,
     /// Time codes after the frame, in order; empty where nothing may move.
     pub times: Vec<f64>,
-    /// What might move, as far as it was met.
+    /// What might move, as far as it was met; `None` where nobody wants to know.
     movers: Option<Vec<Mover>>,
 }
 
@@ -209,9 +209,14 @@ impl Mover {
 }
 
 impl<'r, 'a> Clock<'r, 'a> {
-    /// Of a walk that only takes note of what might move.
+    /// Of a walk while nothing moves.
     pub fn still(reading: &'r Reading<'a>) -> Self {
-        Self { reading, times: Vec::new(), movers: Some(Vec::new()) }
+        Self { reading, times: Vec::new(), movers: None }
+    }
+
+    /// Of a walk that only takes note of what might move.
+    pub fn noting(reading: &'r Reading<'a>) -> Self {
+        Self { movers: Some(Vec::new()), ..Self::still(reading) }
     }
 
     /// Of a walk in which the shutter is open from `open` to `close`: both, and every sample between them
@@ -246,6 +251,31 @@ impl<'r, 'a> Clock<'r, 'a> {
         let frame = self.reading.time.value();
         Some(self.times.iter().map(|time| xform.at(self.reading, TimeCode::new(frame + time))).collect())
     }
+}
+
+/// The primvars that the children of `prim` inherit, of which `inherited` reach the prim itself; `None` where
+/// these are the same. As the crate's `find_incrementally_inheritable_primvars`, but whether there is a value,
+/// for which the crate decodes all of it, is asked only where it matters: UVs are not inherited anyway.
+fn inheritable(prim: &Prim, inherited: &[Primvar]) -> openusd::Result<Option<Vec<Primvar>>> {
+    let mut primvars = Cow::Borrowed(inherited);
+    for attribute in prim.authored_attributes_in_namespace("primvars")? {
+        let Some(primvar) = Primvar::from_attribute(attribute) else { continue };
+        let known = primvars.iter().position(|other| other.attribute().name() == primvar.attribute().name());
+        let interpolation = primvar.attribute().get_metadata::<Token>("interpolation")?;
+        let is_constant = interpolation.is_none_or(|token| token == "constant");
+        if !(is_constant || known.is_some()) || !primvar.attribute().has_authored_value()? {
+            continue;
+        }
+        match known {
+            Some(known) if is_constant => primvars.to_mut()[known] = primvar,
+            Some(known) => _ = primvars.to_mut().remove(known),
+            None => primvars.to_mut().push(primvar),
+        }
+    }
+    Ok(match primvars {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(primvars) => Some(primvars),
+    })
 }
 
 fn token(reading: &Reading<'_>, prim: &Prim, name: &Token) -> String {

@@ -24,6 +24,8 @@ pub(super) enum Role {
 /// A type of prims.
 #[derive(Clone)]
 pub(super) struct Kind {
+    /// The type as authored.
+    pub type_name: Token,
     /// Name of its schema, as "Mesh".
     pub name: Arc<str>,
     pub role: Role,
@@ -52,7 +54,7 @@ impl Kinds {
         let role = role(name.as_str());
         let is = |base: &str| registry.is_a(name, &Token::from(base));
         let (imageable, xformable) = (is("Imageable"), is("Xformable"));
-        let mut kind = Kind { name: name.as_str().into(), role, imageable, xformable };
+        let mut kind = Kind { type_name: token.clone(), name: name.as_str().into(), role, imageable, xformable };
         if schema.is_none() && role == Role::Leaf {
             let what = format!("type '{token}' is of no schema that is known here; the prim itself shows nothing");
             reading.warn(prim.path(), what);

@@ -18,6 +18,7 @@ mod camera;
 mod crew;
 mod cycles;
 mod diagnostics;
+mod files;
 mod gather;
 mod images;
 mod inherit;
@@ -40,12 +41,13 @@ mod walk;
 mod xform;
 
 use std::path::Path;
+use std::sync::mpsc;
 
 use super::ImportOptions;
 use crate::desc::SceneDesc;
 use crate::error::{Error, Result, Warnings};
 
-/// Bytes of stack; memory is taken only where it is used.
+/// Bytes of a reader's stack; memory is taken only where it is used.
 const STACK: usize = 1 << 28;
 
 /// Reads the stage whose root layer is `path`.
@@ -54,16 +56,27 @@ const STACK: usize = 1 << 28;
 /// A root layer that can't be read. Everything else that is broken is told of, and the rest of the
 /// stage is read.
 pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Result<SceneDesc> {
-    // The openusd crate follows what is nested by calling itself: the stack of a thread of its own holds more.
-    std::thread::scope(|scope| {
-        let read = || {
-            let reading = stage::Reading::open(path, options)?;
+    let (sender, scene) = mpsc::channel();
+    let read = {
+        let (path, options) = (path.to_owned(), options.clone());
+        move || {
+            let reading = match stage::Reading::open(&path, &options) {
+                Ok(reading) => reading,
+                Err(error) => return drop(sender.send((Err(error), Warnings::new()))),
+            };
             let scene = scene::build(&reading);
-            warnings.extend(reading.warnings.take());
-            scene
-        };
-        let reader = std::thread::Builder::new().name("usd".into()).stack_size(STACK).spawn_scoped(scope, read);
-        let reader = reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
-        reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+            let told = reading.warnings.take();
+            // Letting go of a stage takes long, and nobody needs to wait for it.
+            let _ = sender.send((scene, told));
+        }
+    };
+    // The openusd crate follows what is nested by calling itself: the stack of a thread of its own holds more.
+    let reader = std::thread::Builder::new().name("usd".into()).stack_size(STACK).spawn(read);
+    let reader = reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
+    let Ok((scene, told)) = scene.recv() else {
+        let panic = reader.join().err().unwrap_or_else(|| Box::new("the reader of a stage left without a word"));
+        std::panic::resume_unwind(panic)
+    };
+    warnings.extend(told);
+    scene
 }

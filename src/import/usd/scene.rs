@@ -56,7 +56,8 @@ fn gather(reading: &Reading<'_>) -> Haul {
     let haul = crew::gather(reading, aside);
     let Some(shutter) = shutter(reading, &haul) else { return haul };
     reading.shutter.set(Some(shutter));
-    let mut walk = Walk::new(Clock::still(reading));
+    reading.crew.borrow_mut().clear();
+    let mut walk = Walk::new(Clock::noting(reading));
     walk.stage();
     let clock = walk.clock.moving(shutter).unwrap_or_else(|| Clock::still(reading));
     crew::by_one(clock, aside)

@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use openusd::sdf::Path;
 use openusd_schemas::geom::Primvar;
 use rayon::prelude::*;
 
 use super::gather::{Found, Look, Read, ShapeLook};
 use super::material::Materials;
-use super::shape::{self, Built, Source, Wants};
+use super::shape::{self, Built, Likeness, Source, Wants};
 use super::stage::Reading;
-use crate::error::{Place, Warnings};
+use crate::error::Warnings;
 
 /// A shape with materials.
 pub(super) struct Dressed {
@@ -32,7 +33,8 @@ pub(super) struct Shapes {
 struct Job {
     source: Option<Source>,
     wants: Wants,
-    place: Place,
+    /// The prim that it is built for, and those that look the same.
+    prims: Vec<Path>,
 }
 
 /// Builds the shapes of everything that was found.
@@ -45,6 +47,7 @@ pub(super) fn build(
     let mut shapes = Shapes::default();
     let mut jobs: Vec<Job> = Vec::new();
     let mut known: HashMap<((usize, usize), Wants), usize> = HashMap::new();
+    let mut alike: HashMap<(Likeness, Wants), usize> = HashMap::new();
     for one in found {
         let key = Arc::as_ptr(&one.look);
         let Some(look) = &one.look.shape else { continue };
@@ -56,20 +59,31 @@ pub(super) fn build(
         let shape = *known.entry((look.shape, wants.clone())).or_insert_with(|| {
             let read = reads.get_mut(look.shape.0).and_then(|batch| batch.get_mut(look.shape.1));
             let source = read.and_then(|read| read.source.take().or_else(|| again(reading, read)));
-            jobs.push(Job { source, wants, place: reading.place_of(&one.look.prim) });
-            jobs.len() - 1
+            let prim = one.look.prim.clone();
+            let likeness = source.as_ref().and_then(Source::likeness);
+            let number = likeness.map_or(jobs.len(), |l| *alike.entry((l, wants.clone())).or_insert(jobs.len()));
+            match jobs.get_mut(number) {
+                Some(job) => job.prims.push(prim),
+                None => jobs.push(Job { source, wants, prims: vec![prim] }),
+            }
+            number
         });
         shapes.by_look.insert(key, Dressed { shape, materials: slots });
     }
     let subdivision = reading.options.subdivision;
+    let place = &reading.place;
     let build = |job: Job| {
         let mut warnings = Warnings::new();
-        let built = job.source.and_then(|s| shape::build(s, &job.wants, subdivision, &job.place, &mut warnings));
-        (built, warnings)
+        let place = job.prims.first().map_or_else(|| place.clone(), |prim| place.at(prim.as_str()));
+        let built = job.source.and_then(|s| shape::build(s, &job.wants, subdivision, &place, &mut warnings));
+        (built, warnings, job.prims)
     };
     let built: Vec<_> = jobs.into_par_iter().map(build).collect();
-    for (built, warnings) in built {
+    for (built, warnings, prims) in built {
         shapes.built.push(built);
+        for warning in warnings.iter() {
+            prims.iter().skip(1).for_each(|prim| reading.warn(prim, &*warning.what));
+        }
         reading.warnings.borrow_mut().extend(warnings);
     }
     shapes

@@ -3,12 +3,16 @@
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
+use std::sync::mpsc;
 
 use openusd::sdf::{self, FromValue, ValueKind};
+use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
+use super::files::Files;
 use super::units::Units;
 use super::{cycles, diagnostics, variants};
 use crate::error::{Error, Place, Result, Warnings};
@@ -39,6 +43,8 @@ pub(super) struct Reading<'a> {
     /// Whether there is a material of a MaterialX document at a path without prim.
     pub documents: RefCell<HashMap<sdf::Path, bool>>,
     authored: RefCell<Authored>,
+    /// Threads that hold what they opened until this is gone: to let go of it would cost time that is needed.
+    pub crew: RefCell<Vec<mpsc::Sender<()>>>,
 }
 
 impl<'a> Reading<'a> {
@@ -51,7 +57,8 @@ impl<'a> Reading<'a> {
         if let Err(source) = std::fs::metadata(path) {
             return Err(Error::io(path, "can't read", source));
         }
-        let opened = Stage::builder().schema_registry(openusd_schemas::schema_registry()).open(&path.to_string_lossy());
+        let (files, schemas) = Files::open(path);
+        let opened = Stage::builder().resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
         let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);
@@ -73,6 +80,7 @@ impl<'a> Reading<'a> {
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
             authored: RefCell::default(),
+            crew: RefCell::default(),
         };
         cycles::mend(&reading);
         variants::select(&reading.stage, &options.variants, &reading.place)?;
@@ -92,6 +100,26 @@ impl<'a> Reading<'a> {
     /// Tells of what could not be composed, which is known once everything was read.
     pub fn warn_of_composition(&self) {
         diagnostics::tell(self);
+    }
+
+    /// Takes note of what is known of `prim`, the one that is asked next: its authored properties and type.
+    pub fn recall(&self, prim: &Prim, names: &Rc<[Token]>, type_name: &Token) {
+        self.authored.borrow_mut().recall(prim, Some(names.clone()), Some(type_name.clone()));
+    }
+
+    /// The authored properties of `prim`.
+    pub fn names(&self, prim: &Prim) -> Rc<[Token]> {
+        self.authored.borrow_mut().names(prim)
+    }
+
+    /// The type of `prim` as authored; empty for one without.
+    pub fn type_name(&self, prim: &Prim) -> Token {
+        self.authored.borrow_mut().type_name(prim)
+    }
+
+    /// True where no API schema is applied to `prim`.
+    pub fn is_plain(&self, prim: &Prim) -> bool {
+        self.authored.borrow_mut().is_plain(prim)
     }
 
     /// The value of attribute `name` of `prim` at the time that is read, authored or the schema's

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use openusd::sdf::{Path, Specifier};
+use openusd::sdf::{FieldKey, Path, Specifier};
 use openusd::tf::Token;
 use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
@@ -41,7 +41,9 @@ pub(super) struct Placed {
 /// What all instances of a prim have in common.
 pub(super) struct Leaf {
     pub prim: Prim,
-    pub kind: Arc<str>,
+    pub kind: Kind,
+    /// Its authored properties.
+    pub names: Rc<[Token]>,
     pub primvars: Rc<Vec<Primvar>>,
     pub bindings: Option<Rc<Bindings>>,
     pub visible: bool,
@@ -105,7 +107,7 @@ impl<'r, 'a> Walk<'r, 'a> {
         let context = match (above, prim) {
             (Some(above), Some(prim)) => {
                 let outer = self.context_at(&above);
-                let names = prim.authored_property_names().unwrap_or_default();
+                let names = self.reading.names(&prim);
                 let kind = self.kinds.of(self.reading, &prim);
                 let mut inner = outer.enter(&mut self.clock, &prim, &kind, &names);
                 inner.hand_down_primvars(self.reading, &prim, &names);
@@ -158,19 +160,19 @@ impl<'r, 'a> Walk<'r, 'a> {
             Some(Specifier::Over) => overs,
             Some(Specifier::Class) | None => false,
         };
-        if !defined || !prim.is_active().unwrap_or(false) {
+        if !defined || !flag(prim, FieldKey::Active).unwrap_or(true) {
             return None;
         }
         let kind = self.kinds.of(reading, prim);
         if kind.role == Role::Aside {
             return None;
         }
-        let is_instance = prim.is_instance().unwrap_or(false);
+        let is_instance = flag(prim, FieldKey::Instanceable) == Some(true) && prim.is_instance().unwrap_or(false);
         if let Some(later) = self.later.as_mut().filter(|_| is_instance || kind.role == Role::Instancer) {
             later.push((shown.len(), prim.path().clone()));
             return None;
         }
-        let names = prim.authored_property_names().unwrap_or_default();
+        let names = reading.names(prim);
         let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
         self.warn_of_draw_mode(prim, &names);
         if is_instance {
@@ -198,7 +200,7 @@ impl<'r, 'a> Walk<'r, 'a> {
         kind: &Kind,
         outer: &Context,
         inner: &Context,
-        names: &[Token],
+        names: &Rc<[Token]>,
         shown: &mut Vec<Shown>,
     ) {
         let hidden = inner.hidden(self.reading);
@@ -209,7 +211,8 @@ impl<'r, 'a> Walk<'r, 'a> {
         let is_link = |n: &Token| n.starts_with("collection:lightLink:") || n.starts_with("collection:shadowLink:");
         let leaf = Leaf {
             prim: prim.clone(),
-            kind: kind.name.clone(),
+            kind: kind.clone(),
+            names: names.clone(),
             primvars: outer.primvars.clone(),
             bindings: inner.bindings.clone(),
             visible: !hidden,
@@ -257,4 +260,10 @@ impl<'r, 'a> Walk<'r, 'a> {
             self.reading.warn(prim.path(), format!("draw mode '{mode}' is not drawn; the prim's geometry is"));
         }
     }
+}
+
+/// What is authored of `field` of `prim`. Its ancestors are as they should be, else the walk had not come here:
+/// to ask the prim itself (`is_active`, `is_instance`) costs twice as much, and is done for every prim.
+fn flag(prim: &Prim, field: FieldKey) -> Option<bool> {
+    prim.stage().field::<bool>(prim.path(), field).ok().flatten()
 }

@@ -22,7 +22,12 @@ pub(super) struct Xform {
 impl Xform {
     /// That of `prim`, whose authored properties are `names`; `None` where it has none.
     pub fn of(reading: &Reading<'_>, prim: &Prim, names: &[Token]) -> Option<Self> {
-        let order: Vec<Token> = reading.value_of(&prim.attribute("xformOpOrder"), reading.time)?;
+        let attribute = prim.attribute("xformOpOrder");
+        // As in OpenUSD, whatever the time.
+        let order = attribute.get_at::<Vec<Token>>(None).unwrap_or_else(|error| {
+            reading.warn(attribute.path(), format!("{error}; taken for not authored"));
+            None
+        })?;
         let mut xform = Self { prim: prim.clone(), ops: Vec::new(), resets: false };
         for entry in &order {
             if entry.as_str() == "!resetXformStack!" {

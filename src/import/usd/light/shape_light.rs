@@ -40,7 +40,8 @@ impl ShapeLight {
     /// The light that the shape at `path` is; `None` for one that is none.
     pub fn of(reading: &Reading<'_>, prim: &Prim, path: &sdf::Path) -> Option<Self> {
         let values = Values { reading, prim, path };
-        if !values.has_api("LightAPI") {
+        // No shape has the schema of lights but where it is applied.
+        if reading.is_plain(prim) || !values.has_api("LightAPI") {
             return None;
         }
         if values.has_api("VolumeLightAPI") {

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use openusd_schemas::geom::Interpolation;
+use rayon::prelude::*;
 
 use super::Wants;
-use super::polygons::{Triangles, cross};
+use super::polygons::{PASS, Triangles, cross};
 use super::primvar::{Channel, Counts, Primvars};
 use crate::desc::{Attribute, MeshDesc, Motion};
 use crate::error::{Place, Warnings};
@@ -158,9 +159,9 @@ impl Spread<'_> {
 /// USD's st grows upwards, ours downwards.
 fn upside_down(mut uvs: Attribute<[f32; 2]>) -> Attribute<[f32; 2]> {
     let (Attribute::Point(values) | Attribute::Corner(values)) = &mut uvs;
-    for [u, v] in values {
+    values.par_iter_mut().with_min_len(PASS).for_each(|[u, v]| {
         (*u, *v) = (if u.is_finite() { *u } else { 0.0 }, if v.is_finite() { 1.0 - *v } else { 1.0 });
-    }
+    });
     uvs
 }
 
@@ -206,16 +207,15 @@ fn mend_normals(
 ) {
     let mut broken = Vec::new();
     let (Attribute::Point(values) | Attribute::Corner(values)) = &mut *normals;
-    for (i, normal) in values.iter_mut().enumerate() {
-        let length = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-        // Most files hold unit vectors.
-        if (length - 1.0).abs() > 1e-6 {
-            match Vec3::from(*normal).try_normalize() {
-                Some(unit) => *normal = unit.into(),
-                None => broken.push(i),
-            }
-        } else if length.is_nan() {
-            broken.push(i);
+    let is_unit = |n: &[f32; 3]| (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0).abs() <= 1e-6;
+    // Most files hold unit vectors.
+    if values.par_iter().with_min_len(PASS).all(is_unit) {
+        return;
+    }
+    for (i, normal) in values.iter_mut().enumerate().filter(|(_, normal)| !is_unit(normal)) {
+        match Vec3::from(*normal).try_normalize() {
+            Some(unit) => *normal = unit.into(),
+            None => broken.push(i),
         }
     }
     if broken.is_empty() {

@@ -22,6 +22,7 @@ mod triangulate;
 mod tube;
 mod values;
 
+pub(super) use primitive::Likeness;
 use std::sync::Arc;
 
 use openusd::sdf;
@@ -64,6 +65,14 @@ pub(super) struct Built {
 }
 
 impl Source {
+    /// What makes two of them the same shape, where that is cheaper to tell than to build both.
+    pub fn likeness(&self) -> Option<Likeness> {
+        match self {
+            Self::Primitive(primitive) => primitive.likeness(),
+            _ => None,
+        }
+    }
+
     /// Paths of the GeomSubsets that a material may be bound to.
     pub fn subsets(&self) -> &[sdf::Path] {
         match self {
@@ -76,7 +85,7 @@ impl Source {
 /// Reads the gprim `prim`, which inherits `primvars`. `None` for a kind that is no shape, or one that is
 /// broken, which is told.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, primvars: &[Primvar]) -> Option<Source> {
-    let kind = prim.type_name().ok()??;
+    let kind = reading.type_name(prim);
     match kind.as_str() {
         "Mesh" => mesh::read(reading, prim, primvars, reading.shutter.get()).map(|mesh| Source::Mesh(Box::new(mesh))),
         "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars).map(|mesh| Source::Mesh(Box::new(mesh))),

@@ -1,6 +1,7 @@
 //! The faces of a mesh, rid of what can't be traced, and their triangles.
 
 use bytemuck::allocation::{cast_vec, try_cast_vec};
+use rayon::prelude::*;
 
 use super::triangulate::{Scratch, triangulate};
 use crate::error::{Place, Warnings};
@@ -24,6 +25,9 @@ pub(super) struct Triangles {
     pub faces: Option<Vec<u32>>,
 }
 
+/// Values that one thread looks at in a pass over all; fewer are not worth a second thread.
+pub(super) const PASS: usize = 1 << 16;
+
 /// Points beyond this, whose squared length leaves single precision, count as not finite.
 fn is_sound(point: &[f32; 3]) -> bool {
     point.iter().all(|v| v.abs() < 1e18)
@@ -31,7 +35,7 @@ fn is_sound(point: &[f32; 3]) -> bool {
 
 /// Points that are not finite, which are moved to the origin.
 pub(super) fn mend_points(points: &mut [[f32; 3]]) -> Option<Vec<bool>> {
-    if points.iter().all(is_sound) {
+    if points.par_iter().with_min_len(PASS).all(is_sound) {
         return None;
     }
     let bad = points.iter().map(|point| !is_sound(point)).collect();
@@ -57,9 +61,9 @@ impl Authored<'_> {
             && self.holes.is_empty()
             && self.bad.is_none()
             && !self.flipped
-            && self.counts.iter().all(|&count| count == 3)
+            && self.counts.par_iter().with_min_len(PASS).all(|&count| count == 3)
             // Negative ones are large.
-            && self.indices.iter().fold(0, |max, &i| max.max(i as u32)) < self.points as u32;
+            && self.indices.par_iter().with_min_len(PASS).all(|&i| (i as u32) < self.points as u32);
         if !fits {
             return Err(self);
         }
@@ -176,7 +180,7 @@ impl Triangles {
             let [a, b, c] = [a, b, c].map(|i| points[i as usize]);
             cross(a, b, c) == [0.0; 3] && cross(a.map(f64::from), b.map(f64::from), c.map(f64::from)) == [0.0; 3]
         };
-        if !self.points.iter().any(is_flat) {
+        if !self.points.par_iter().with_min_len(PASS).any(is_flat) {
             return;
         }
         let count = self.points.len();

@@ -1,5 +1,7 @@
 //! Cube, Sphere, Cylinder, Cone, Capsule, Plane.
 
+use std::mem::Discriminant;
+
 use openusd::tf::Token;
 use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
@@ -20,6 +22,7 @@ pub(in super::super) struct Primitive {
     primvars: Primvars,
 }
 
+#[derive(Debug)]
 enum Shape {
     Cube { size: f64 },
     Sphere { radius: f64 },
@@ -28,14 +31,24 @@ enum Shape {
     Plane { width: f64, length: f64 },
 }
 
+/// The kind of a primitive, its axis and its numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(in super::super) struct Likeness(Discriminant<Shape>, Axis, [u64; 3]);
+
 /// The primitive `prim` of schema `kind`; `None` for other kinds, and, with a warning, for one without
 /// extent.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Primitive> {
     // A size below 0 means nothing in the schema; Hydra draws the shape inside out.
     let size = |name: &str| reading.value::<f64>(prim, name).filter(|v| v.is_finite()).map_or(0.0, f64::abs);
     let (shape, has_extent) = match kind {
-        "Cube" => (Shape::Cube { size: size("size") }, size("size") > 0.0),
-        "Sphere" => (Shape::Sphere { radius: size("radius") }, size("radius") > 0.0),
+        "Cube" => {
+            let size = size("size");
+            (Shape::Cube { size }, size > 0.0)
+        }
+        "Sphere" => {
+            let radius = size("radius");
+            (Shape::Sphere { radius }, radius > 0.0)
+        }
         "Cylinder" | "Cylinder_1" | "Cone" => {
             let [bottom, top] = match kind {
                 "Cylinder" => [size("radius"); 2],
@@ -64,7 +77,15 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         reading.warn(prim.path(), "the shape has no extent; it is left out");
         return None;
     }
-    let axis = match reading.value::<Token>(prim, "axis") {
+    let axis = match shape {
+        Shape::Cube { .. } | Shape::Sphere { .. } => Axis::Z,
+        _ => axis(reading, prim),
+    };
+    Some(Primitive { shape, axis, primvars: primvar::read(reading, prim, inherited) })
+}
+
+fn axis(reading: &Reading<'_>, prim: &Prim) -> Axis {
+    match reading.value::<Token>(prim, "axis") {
         Some(axis) if axis == "X" => Axis::X,
         Some(axis) if axis == "Y" => Axis::Y,
         Some(axis) if axis != "Z" => {
@@ -72,11 +93,22 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
             Axis::Z
         }
         _ => Axis::Z,
-    };
-    Some(Primitive { shape, axis, primvars: primvar::read(reading, prim, inherited) })
+    }
 }
 
 impl Primitive {
+    /// What makes two primitives the same; `None` for one that has values of its own.
+    pub fn likeness(&self) -> Option<Likeness> {
+        let sizes = match self.shape {
+            Shape::Cube { size } => [size, 0.0, 0.0],
+            Shape::Sphere { radius } => [radius, 0.0, 0.0],
+            Shape::Cylinder { bottom, top, height } | Shape::Capsule { bottom, top, height } => [bottom, top, height],
+            Shape::Plane { width, length } => [width, length, 0.0],
+        };
+        let likeness = Likeness(std::mem::discriminant(&self.shape), self.axis, sizes.map(f64::to_bits));
+        self.primvars.is_empty().then_some(likeness)
+    }
+
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
         let Self { shape, axis, primvars } = self;
         let solid = match shape {

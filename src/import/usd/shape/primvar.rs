@@ -75,10 +75,14 @@ impl<const N: usize> Channel<N> {
 ///
 /// Whether a value is authored is told by reading it: to ask the stage first would decode it twice.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) -> Primvars {
-    let own = PrimvarsAPI::from_prim_unchecked(prim.clone()).authored_primvars().unwrap_or_else(|error| {
-        reading.warn(prim.path(), format!("its primvars can't be read: {error}"));
+    let own = if reading.names(prim).iter().any(|name| name.starts_with("primvars:")) {
+        PrimvarsAPI::from_prim_unchecked(prim.clone()).authored_primvars().unwrap_or_else(|error| {
+            reading.warn(prim.path(), format!("its primvars can't be read: {error}"));
+            Vec::new()
+        })
+    } else {
         Vec::new()
-    });
+    };
     let mut primvars = Primvars::default();
     let mut known: HashSet<&str> = HashSet::new();
     for primvar in own.iter().chain(inherited) {
@@ -91,6 +95,12 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) ->
 }
 
 impl Primvars {
+    /// True where nothing was found.
+    pub fn is_empty(&self) -> bool {
+        let Self { uvs, color, opacity, normals, widths } = self;
+        uvs.is_empty() && color.is_none() && opacity.is_none() && normals.is_none() && widths.is_none()
+    }
+
     /// True where `primvar` has a value.
     fn take(&mut self, reading: &Reading<'_>, primvar: &Primvar) -> bool {
         match primvar.primvar_name() {

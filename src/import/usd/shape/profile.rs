@@ -161,7 +161,7 @@ impl Solid {
 }
 
 /// The axis of a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Axis {
     X,
     Y,
