@@ -80,7 +80,7 @@ pub(super) struct Gatherer<'r, 'a> {
     /// True for the types that are no shapes.
     aside: fn(&str) -> bool,
     known: HashMap<(*const Leaf, *const Scope), Known>,
-    shapes: HashMap<(Path, Vec<Path>), Option<Rc<Subsets>>>,
+    shapes: HashMap<(Path, Vec<Path>, bool), Option<Rc<Subsets>>>,
 }
 
 /// A look, and what keeps the addresses that it is known by.
@@ -124,24 +124,30 @@ impl<'r, 'a> Gatherer<'r, 'a> {
     fn look(&mut self, shown: &Shown, number: usize, batch: &mut Vec<Read>) -> Option<Look> {
         let reading = self.walk.reading;
         let leaf = &*shown.leaf;
-        let material = |bindings: Option<&Rc<Bindings>>, path: &Path| {
-            bindings::bound(reading, bindings, shown.scope.as_ref(), path)
+        let material = |bindings: Option<&Rc<Bindings>>, path: &Path| match leaf.stand_in {
+            // Nothing is bound to cards: their materials are the attributes that name their pictures.
+            Some(_) => path.is_property_path().then(|| path.clone()),
+            None => bindings::bound(reading, bindings, shown.scope.as_ref(), path),
         };
         let shape = if (self.aside)(&leaf.kind) {
             None
         } else {
             let primvars: Vec<Path> = leaf.primvars.iter().map(|p| p.attribute().path().clone()).collect();
-            let key = (leaf.prim.path().clone(), primvars);
+            let key = (leaf.prim.path().clone(), primvars, leaf.stand_in.is_some());
             let known = self.shapes.entry(key.clone());
             let read = known.or_insert_with(|| {
-                let source = shape::read(reading, &leaf.prim, &leaf.primvars)?;
+                let source = match &leaf.stand_in {
+                    Some(stand_in) => Source::StandIn(Box::new(stand_in.clone())),
+                    None => shape::read(reading, &leaf.prim, &leaf.primvars)?,
+                };
                 let each = source.subsets().iter().map(|path| (path.clone(), subset(reading, leaf, path))).collect();
                 batch.push(Read { prim: key.0, primvars: key.1, source: Some(source) });
                 Some(Rc::new(Subsets { shape: (number, batch.len() - 1), each }))
             });
             let read = read.as_ref()?;
             let subsets = read.each.iter().map(|(path, bindings)| material(bindings.as_ref(), path)).collect();
-            let light = ShapeLight::of(reading, &leaf.prim, &shown.path);
+            let shines = leaf.stand_in.is_none();
+            let light = shines.then(|| ShapeLight::of(reading, &leaf.prim, &shown.path)).flatten();
             Some(ShapeLook { shape: read.shape, subsets, light })
         };
         Some(Look {

@@ -8,6 +8,7 @@ use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::{Primvar, PrimvarsAPI};
 
 use super::bindings::Bindings;
+use super::draw_mode::DrawMode;
 use super::kinds::Kind;
 use super::stage::Reading;
 use super::xform::Xform;
@@ -68,6 +69,8 @@ pub(super) struct Context {
     pub asset: Option<Arc<str>>,
     /// True where a child may be a model.
     pub group: bool,
+    /// How models are drawn instead of themselves.
+    pub draw_mode: Option<DrawMode>,
 }
 
 impl Context {
@@ -82,6 +85,7 @@ impl Context {
             bindings: None,
             asset: None,
             group: true,
+            draw_mode: None,
         }
     }
 
@@ -91,9 +95,10 @@ impl Context {
         self.invisible || self.hidden_purposes[index(purpose)] || !reading.options.purposes.contains(&purpose)
     }
 
-    /// True where the same prims below both are hidden.
+    /// True where the same prims below both are hidden or replaced.
     pub fn shows_like(&self, other: &Self) -> bool {
-        self.invisible == other.invisible
+        self.draw_mode == other.draw_mode
+            && self.invisible == other.invisible
             && self.purpose == other.purpose
             && self.hidden_purposes == other.hidden_purposes
     }
@@ -117,6 +122,7 @@ impl Context {
             match name.as_str() {
                 "xformOpOrder" if kind.xformable => inner.pose = self.pose_of(clock, prim, names),
                 "visibility" if kind.imageable => inner.invisible |= token(reading, prim, name) == "invisible",
+                "model:drawMode" => inner.draw_mode = DrawMode::of(reading, prim, self.draw_mode),
                 "purpose" if kind.imageable => inner.purpose = self.purpose_of(reading, prim, name),
                 "renderVisibility" | "proxyVisibility" | "guideVisibility" if kind.imageable => {
                     let at =

@@ -15,9 +15,11 @@
 mod authored;
 mod bindings;
 mod camera;
+mod cards;
 mod crew;
 mod cycles;
 mod diagnostics;
+mod draw_mode;
 mod gather;
 mod images;
 mod inherit;

@@ -14,8 +14,9 @@ use super::cycles;
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
 use super::prototypes::Prototypes;
+use super::shape::StandIn;
 use super::stage::Reading;
-use super::{instancer, prototypes};
+use super::{draw_mode, instancer, prototypes};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -47,6 +48,8 @@ pub(super) struct Leaf {
     pub visible: bool,
     /// True where a collection may say what the light that it emits reaches.
     pub linked: bool,
+    /// What is drawn in its place.
+    pub stand_in: Option<StandIn>,
 }
 
 /// One of them.
@@ -70,6 +73,8 @@ pub(super) struct Walk<'r, 'a> {
     /// Instances that are left to another walk, and how many prims were shown before them; `None` where
     /// they are shown at once.
     pub later: Option<Vec<(usize, Path)>>,
+    /// What stands in for models, by how it looks.
+    pub stand_ins: HashMap<String, Rc<Leaf>>,
     kinds: Kinds,
     contexts: HashMap<Path, Rc<Context>>,
     count: usize,
@@ -77,8 +82,8 @@ pub(super) struct Walk<'r, 'a> {
 
 impl<'r, 'a> Walk<'r, 'a> {
     pub fn new(clock: Clock<'r, 'a>) -> Self {
-        let (prototypes, kinds, contexts) = Default::default();
-        Self { reading: clock.reading, clock, prototypes, later: None, kinds, contexts, count: 0 }
+        let (prototypes, kinds, contexts, stand_ins) = Default::default();
+        Self { reading: clock.reading, clock, prototypes, later: None, stand_ins, kinds, contexts, count: 0 }
     }
 
     /// Everything in the stage, parents before children.
@@ -172,7 +177,9 @@ impl<'r, 'a> Walk<'r, 'a> {
         }
         let names = prim.authored_property_names().unwrap_or_default();
         let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
-        self.warn_of_draw_mode(prim, &names);
+        if draw_mode::replace(self, prim, &kind, &names, [context, &inner], shown) {
+            return None;
+        }
         if is_instance {
             inner.hand_down_primvars(reading, prim, &names);
             prototypes::instance(self, prim, inner, shown);
@@ -192,7 +199,8 @@ impl<'r, 'a> Walk<'r, 'a> {
         Some(inner)
     }
 
-    fn leaf(
+    /// Adds `prim` itself, whose parent hands down `outer`.
+    pub fn leaf(
         &mut self,
         prim: &Prim,
         kind: &Kind,
@@ -214,6 +222,7 @@ impl<'r, 'a> Walk<'r, 'a> {
             bindings: inner.bindings.clone(),
             visible: !hidden,
             linked: names.iter().any(is_link),
+            stand_in: None,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
         self.show(Shown { leaf: Rc::new(leaf), path, pose: inner.pose.clone(), asset, scope: None }, shown);
@@ -244,17 +253,5 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// True where no more can be added.
     pub fn full(&self) -> bool {
         self.count > MOST_PRIMS
-    }
-
-    fn warn_of_draw_mode(&self, prim: &Prim, names: &[Token]) {
-        if !names.iter().any(|name| name.as_str() == "model:drawMode") {
-            return;
-        }
-        let Some(mode) = self.reading.value::<Token>(prim, "model:drawMode") else { return };
-        let applied = self.reading.value::<bool>(prim, "model:applyDrawMode") == Some(true);
-        let is_mode = matches!(mode.as_str(), "bounds" | "origin" | "cards");
-        if is_mode && (applied || prim.is_component().unwrap_or(false)) {
-            self.reading.warn(prim.path(), format!("draw mode '{mode}' is not drawn; the prim's geometry is"));
-        }
     }
 }

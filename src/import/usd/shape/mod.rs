@@ -16,11 +16,14 @@ mod primitive;
 mod primvar;
 mod profile;
 mod segments;
+mod stand_in;
 mod subdivide;
 mod subsets;
 mod triangulate;
 mod tube;
 mod values;
+
+pub(super) use stand_in::{CARDS_UV, Quad, StandIn, StandInShape};
 
 use std::sync::Arc;
 
@@ -39,6 +42,7 @@ pub(super) enum Source {
     Curves(Box<curves::Curves>),
     Points(Box<points::Points>),
     Primitive(Box<primitive::Primitive>),
+    StandIn(Box<StandIn>),
 }
 
 /// What the materials of a shape need of it.
@@ -64,10 +68,11 @@ pub(super) struct Built {
 }
 
 impl Source {
-    /// Paths of the GeomSubsets that a material may be bound to.
+    /// Paths of the GeomSubsets that a material may be bound to, and of what stands for them.
     pub fn subsets(&self) -> &[sdf::Path] {
         match self {
             Self::Mesh(mesh) => &mesh.subsets.paths,
+            Self::StandIn(stand_in) => &stand_in.textures,
             _ => &[],
         }
     }
@@ -109,6 +114,7 @@ pub(super) fn build(
         Source::Curves(curves) => curves.build(wants, place, warnings),
         Source::Points(points) => points.build(wants, place, warnings),
         Source::Primitive(primitive) => primitive.build(wants, place, warnings),
+        Source::StandIn(stand_in) => stand_in.build(wants, place, warnings),
     }
 }
 
