@@ -8,6 +8,8 @@ use openusd::sdf::{self, Path, Value};
 use openusd::tf::Token;
 use openusd::usd::{Prim, PrimDefinition};
 
+use super::schemas;
+
 /// The authored properties of the prim that was asked last; a prim's attributes are read one after another.
 #[derive(Default)]
 pub(super) struct Authored {
@@ -18,6 +20,8 @@ pub(super) struct Authored {
     clipped: bool,
     /// The same for prims that have children.
     known: HashMap<Path, bool>,
+    /// What is to be told of API schemas in versions that are not known here.
+    pub unknown: Vec<(Path, String)>,
 }
 
 impl Authored {
@@ -25,7 +29,9 @@ impl Authored {
     pub fn fallback(&mut self, prim: &Prim, name: &str) -> Option<Option<Value>> {
         if self.path != *prim.path() {
             self.names = prim.authored_property_names().ok()?;
-            self.definition = prim.prim_definition().ok();
+            let info = prim.prim_type_info().ok();
+            self.unknown.extend(info.iter().flat_map(|info| schemas::unknown_versions(prim, info)));
+            self.definition = info.map(|info| info.prim_definition().clone());
             self.clipped = has_clips(prim) || prim.parent().is_some_and(|parent| self.clipped(&parent));
             self.path = prim.path().clone();
         }

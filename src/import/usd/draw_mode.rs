@@ -92,8 +92,8 @@ pub(super) fn replace(
             stand_in: Some(StandIn { shape, color, textures }),
         })
     });
-    let (leaf, asset) = (leaf.clone(), context.asset.clone());
-    walk.show(Shown { leaf, path: prim.path().clone(), pose: context.pose.clone(), asset, scope: None }, shown);
+    let (leaf, path, asset) = (leaf.clone(), prim.path().clone(), context.asset.clone());
+    walk.show(Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None }, shown);
     true
 }
 

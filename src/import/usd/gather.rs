@@ -10,6 +10,7 @@ use openusd::sdf::Path;
 use super::bindings::{self, Bindings, Scope};
 use super::inherit::{Clock, Pose};
 use super::light::ShapeLight;
+use super::shape::tint::Tint;
 use super::shape::{self, Source};
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
@@ -62,6 +63,15 @@ pub(super) struct Found {
     pub pose: Pose,
     /// Name of its asset.
     pub asset: Option<Arc<str>>,
+    /// Where it has no colours of its own.
+    pub color: Option<Tint>,
+}
+
+impl Found {
+    /// What it is made by: its look, and whether it has a colour.
+    pub fn key(&self) -> (*const Look, bool) {
+        (Arc::as_ptr(&self.look), self.color.is_some())
+    }
 }
 
 /// Everything that is shown, parents before children.
@@ -116,7 +126,7 @@ impl<'r, 'a> Gatherer<'r, 'a> {
                 look
             });
             if let Some(look) = look {
-                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset });
+                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset, color: one.color });
             }
         }
     }

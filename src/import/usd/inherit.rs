@@ -92,7 +92,7 @@ impl Context {
     /// True where nothing but a camera is of use.
     pub fn hidden(&self, reading: &Reading<'_>) -> bool {
         let Some(purpose) = self.purpose else { return self.invisible };
-        self.invisible || self.hidden_purposes[index(purpose)] || !reading.options.purposes.contains(&purpose)
+        self.invisible || self.hidden_purposes[index(purpose)] || !reading.purposes.contains(&purpose)
     }
 
     /// True where the same prims below both are hidden or replaced.

@@ -31,6 +31,7 @@ mod material;
 mod prototypes;
 mod render;
 mod scene;
+mod schemas;
 mod shape;
 mod shapes;
 mod stage;

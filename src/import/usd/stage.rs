@@ -5,12 +5,14 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use openusd::sdf::{self, FromValue, ValueKind};
+use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
 use super::units::Units;
-use super::{cycles, diagnostics, variants};
+use super::{cycles, diagnostics, render, variants};
+use crate::import::Purpose;
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::DAffine3;
 
@@ -32,6 +34,10 @@ pub(super) struct Reading<'a> {
     /// True for files that Blender wrote, by the root layer's own metadata; some of their values mean
     /// something else than UsdLux says.
     pub blender: bool,
+    /// Purposes that are shown beside `default`.
+    pub purposes: Vec<Purpose>,
+    /// Purposes of the material bindings that count, the strongest first; empty for all-purpose ones.
+    pub binding_purposes: Vec<Token>,
     /// How many of its layers were searched for cycles.
     pub layers: Cell<usize>,
     /// What was told so far.
@@ -60,7 +66,7 @@ impl<'a> Reading<'a> {
         // What the metadata that files call `doc` is named in memory.
         let doc = stage.field::<sdf::Value>(&root, "documentation").ok().flatten();
         let blender = matches!(doc, Some(sdf::Value::String(text)) if text.starts_with("Blender v"));
-        let reading = Self {
+        let mut reading = Self {
             stage,
             time,
             shutter: Cell::new(None),
@@ -69,6 +75,8 @@ impl<'a> Reading<'a> {
             meters: units.meters,
             to_world: units.to_world(),
             blender,
+            purposes: Vec::new(),
+            binding_purposes: Vec::new(),
             layers: Cell::new(0),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
@@ -76,6 +84,9 @@ impl<'a> Reading<'a> {
         };
         cycles::mend(&reading);
         variants::select(&reading.stage, &options.variants, &reading.place)?;
+        let included = render::Purposes::of(&reading);
+        reading.purposes = options.purposes.clone().unwrap_or(included.shown);
+        reading.binding_purposes = included.bindings;
         Ok(reading)
     }
 
@@ -89,9 +100,12 @@ impl<'a> Reading<'a> {
         self.warnings.borrow_mut().push(&self.place_of(path), what);
     }
 
-    /// Tells of what could not be composed, which is known once everything was read.
+    /// Tells of what could not be composed and of schemas that are not known, once everything was read.
     pub fn warn_of_composition(&self) {
         diagnostics::tell(self);
+        for (path, what) in self.authored.borrow_mut().unknown.drain(..) {
+            self.warn(&path, what);
+        }
     }
 
     /// The value of attribute `name` of `prim` at the time that is read, authored or the schema's

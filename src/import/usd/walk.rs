@@ -15,8 +15,9 @@ use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
 use super::prototypes::Prototypes;
 use super::shape::StandIn;
+use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{draw_mode, instancer, prototypes};
+use super::{draw_mode, instancer, prototypes, schemas};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -63,6 +64,8 @@ pub(super) struct Shown {
     pub asset: Option<Arc<str>>,
     /// The instances that it is in.
     pub scope: Option<Rc<Scope>>,
+    /// The colour of the innermost of them that has one.
+    pub color: Option<Tint>,
 }
 
 /// A walk of the stage, or of a part of it.
@@ -177,6 +180,9 @@ impl<'r, 'a> Walk<'r, 'a> {
         }
         let names = prim.authored_property_names().unwrap_or_default();
         let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
+        if kind.role == Role::Group {
+            schemas::tell_of_shapeless(reading, prim, &kind, &names);
+        }
         if draw_mode::replace(self, prim, &kind, &names, [context, &inner], shown) {
             return None;
         }
@@ -225,7 +231,8 @@ impl<'r, 'a> Walk<'r, 'a> {
             stand_in: None,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
-        self.show(Shown { leaf: Rc::new(leaf), path, pose: inner.pose.clone(), asset, scope: None }, shown);
+        let (leaf, pose) = (Rc::new(leaf), inner.pose.clone());
+        self.show(Shown { leaf, path, pose, asset, scope: None, color: None }, shown);
     }
 
     /// Adds one.

@@ -19,6 +19,7 @@ mod segments;
 mod stand_in;
 mod subdivide;
 mod subsets;
+pub(super) mod tint;
 mod triangulate;
 mod tube;
 mod values;
@@ -56,6 +57,8 @@ pub(super) struct Wants {
     pub tangents: Option<u32>,
     /// displayColor and displayOpacity as colours of the mesh.
     pub display_color: bool,
+    /// True where instances have colours, which take the place of those that the shape lacks.
+    pub instance_color: bool,
 }
 
 /// A gprim as it is traced.
