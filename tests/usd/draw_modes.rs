@@ -85,11 +85,8 @@ fn cards_lie_about_the_bounds() {
     let loaded = load("draw_modes.usda", &ImportOptions::default());
     let of = |path: &str| {
         let instance = loaded.one(path);
-        let names: Vec<&str> = instance
-            .materials
-            .iter()
-            .map(|m| &*loaded.scene.materials[m.unwrap() as usize].name)
-            .collect();
+        let names: Vec<&str> =
+            instance.materials.iter().map(|m| &*loaded.scene.materials[m.unwrap() as usize].name).collect();
         (mesh(&loaded, path), names)
     };
     // Without pictures three quads across the middle, seen from both sides.

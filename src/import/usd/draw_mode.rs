@@ -66,7 +66,8 @@ pub(super) fn replace(
     shown: &mut Vec<Shown>,
 ) -> bool {
     let reading = walk.reading;
-    let Some(mode) = context.draw_mode.filter(|_| applies(reading, prim, names)) else { return false };
+    let mode = context.draw_mode.filter(|_| !walk.measuring && applies(reading, prim, names));
+    let Some(mode) = mode else { return false };
     if context.hidden(reading) {
         return true;
     }
@@ -147,18 +148,20 @@ fn hint(reading: &Reading<'_>, prim: &Prim) -> Option<Range> {
     around(full.flatten().map(|corner| DVec3::from(corner.map(f64::from))))
 }
 
-/// The bounds of all that would be drawn of `prim`, in its own space.
+/// The bounds of all that is in `prim`, in its own space; models in it are taken as they are.
 fn computed(walk: &mut Walk<'_, '_>, prim: &Prim, kind: &Kind, [outer, context]: [&Context; 2]) -> Option<Range> {
     let reading = walk.reading;
     let mut inside = Vec::new();
-    let within = Context { pose: Pose::still(DAffine3::IDENTITY), draw_mode: None, ..context.clone() };
-    // What is below an instance is wanted here and now.
-    let later = walk.later.take();
+    let within = Context { pose: Pose::still(DAffine3::IDENTITY), ..context.clone() };
+    // What is below an instance is wanted here and now, and is of no use for drawing.
+    let (later, prototypes) = (walk.later.take(), std::mem::take(&mut walk.prototypes));
+    walk.measuring = true;
     if kind.role == Role::Leaf {
         walk.leaf(prim, kind, outer, &within, &[], &mut inside);
     }
     walk.below(prim, within, false, &mut inside);
-    walk.later = later;
+    walk.measuring = false;
+    (walk.later, walk.prototypes) = (later, prototypes);
     let from_world = context.pose.world.inverse();
     let mut corners = Vec::new();
     for one in inside {
@@ -173,9 +176,6 @@ fn computed(walk: &mut Walk<'_, '_>, prim: &Prim, kind: &Kind, [outer, context]:
 /// The bounds of one shape: as authored, else of its points, else of what is made of it.
 fn extent(reading: &Reading<'_>, leaf: &Leaf) -> Option<Range> {
     let of_points = |points: &[[f32; 3]]| around(points.iter().map(|p| DVec3::from(p.map(f64::from))));
-    if let Some(stand_in) = &leaf.stand_in {
-        return of_points(&stand_in.points());
-    }
     let authored = |name: &str| {
         let is_there = leaf.prim.attribute(name).has_authored_value().unwrap_or(false);
         let points = is_there.then(|| reading.value::<Vec<Vec3f>>(&leaf.prim, name)).flatten()?;
@@ -189,9 +189,12 @@ fn extent(reading: &Reading<'_>, leaf: &Leaf) -> Option<Range> {
     })
 }
 
-/// The smallest box around `points`; `None` where there are none, or one that is not finite.
+/// Larger bounds have no diagonal in single precision.
+const LARGEST: f32 = 1e18;
+
+/// The smallest box around `points`; `None` where there are none, or one that is out of range.
 fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Range> {
     let (low, high) = points.into_iter().map(|p| (p, p)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
     let both = [low, high].map(|corner| corner.as_vec3().to_array());
-    both.as_flattened().iter().all(|x| x.is_finite()).then_some(both)
+    both.as_flattened().iter().all(|x| x.abs() < LARGEST).then_some(both)
 }

@@ -25,7 +25,8 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         return;
     }
     let prototypes = prototypes(walk, prim, context);
-    let of = |index: &i32| usize::try_from(*index).ok().and_then(|index| prototypes.get(index)).map_or(0, |p| p.shown.len());
+    let of =
+        |index: &i32| usize::try_from(*index).ok().and_then(|index| prototypes.get(index)).map_or(0, |p| p.shown.len());
     if !walk.affords(indices.iter().map(of).fold(0, usize::saturating_add), prim) {
         return;
     }

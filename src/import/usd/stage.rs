@@ -12,8 +12,8 @@ use super::super::ImportOptions;
 use super::authored::Authored;
 use super::units::Units;
 use super::{cycles, diagnostics, render, variants};
-use crate::import::Purpose;
 use crate::error::{Error, Place, Result, Warnings};
+use crate::import::Purpose;
 use crate::math::DAffine3;
 
 /// A composed stage, the time at which it is read, and how its space lies in ours.

@@ -78,6 +78,8 @@ pub(super) struct Walk<'r, 'a> {
     pub later: Option<Vec<(usize, Path)>>,
     /// What stands in for models, by how it looks.
     pub stand_ins: HashMap<String, Rc<Leaf>>,
+    /// True while bounds are computed, for which nothing stands in for anything.
+    pub measuring: bool,
     kinds: Kinds,
     contexts: HashMap<Path, Rc<Context>>,
     count: usize,
@@ -86,7 +88,17 @@ pub(super) struct Walk<'r, 'a> {
 impl<'r, 'a> Walk<'r, 'a> {
     pub fn new(clock: Clock<'r, 'a>) -> Self {
         let (prototypes, kinds, contexts, stand_ins) = Default::default();
-        Self { reading: clock.reading, clock, prototypes, later: None, stand_ins, kinds, contexts, count: 0 }
+        Self {
+            reading: clock.reading,
+            clock,
+            prototypes,
+            later: None,
+            stand_ins,
+            measuring: false,
+            kinds,
+            contexts,
+            count: 0,
+        }
     }
 
     /// Everything in the stage, parents before children.

@@ -28,18 +28,26 @@ pub(super) fn network(reading: &Reading<'_>, path: &sdf::Path) -> Option<Found> 
         inputs: inputs.into_iter().map(|(name, input)| (name.to_string(), input)).collect::<BTreeMap<_, _>>(),
     };
     let nodes = vec![
-        node("UsdPreviewSurface", "", vec![
-            ("diffuseColor", from(1, "rgb")),
-            ("opacity", from(1, "a")),
-            ("opacityThreshold", value(Some(Value::Numbers([0.1, 0.0, 0.0, 0.0], 1)))),
-        ]),
-        node("UsdUVTexture", "", vec![
-            ("file", value(shade::value(reading, &attribute))),
-            ("fallback", value(Some(Value::Numbers([r.into(), g.into(), b.into(), 1.0], 4)))),
-            ("wrapS", text("clamp")),
-            ("wrapT", text("clamp")),
-            ("st", from(2, "result")),
-        ]),
+        node(
+            "UsdPreviewSurface",
+            "",
+            vec![
+                ("diffuseColor", from(1, "rgb")),
+                ("opacity", from(1, "a")),
+                ("opacityThreshold", value(Some(Value::Numbers([0.1, 0.0, 0.0, 0.0], 1)))),
+            ],
+        ),
+        node(
+            "UsdUVTexture",
+            "",
+            vec![
+                ("file", value(shade::value(reading, &attribute))),
+                ("fallback", value(Some(Value::Numbers([r.into(), g.into(), b.into(), 1.0], 4)))),
+                ("wrapS", text("clamp")),
+                ("wrapT", text("clamp")),
+                ("st", from(2, "result")),
+            ],
+        ),
         node("UsdPrimvarReader", "float2", vec![("varname", text(CARDS_UV))]),
     ];
     Some(Found { network: Network { nodes }, surface: Source { node: 0, output: "surface".to_string() } })

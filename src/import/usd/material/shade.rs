@@ -93,7 +93,6 @@ impl Builder<'_, '_> {
             .find_map(|a| a.get_metadata::<sdf::Value>("colorSpace").ok().flatten().and_then(text_of));
         Input { value: value(self.reading, &producer), source: None, color_space }
     }
-
 }
 
 /// The value of an attribute.

@@ -47,15 +47,6 @@ pub(in super::super) struct Quad {
 }
 
 impl StandIn {
-    /// Everything drawn lies in the box around these, but for the thickness of lines.
-    pub fn points(&self) -> Vec<[f32; 3]> {
-        match &self.shape {
-            StandInShape::Bounds(corners) => corners.to_vec(),
-            StandInShape::Origin => vec![[0.0; 3], [1.0; 3]],
-            StandInShape::Cards(quads) => quads.iter().flat_map(|quad| quad.points).collect(),
-        }
-    }
-
     pub(super) fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
         let color = Channel { interpolation: Interpolation::Constant, values: vec![self.color], indices: None };
         let mut channels = Channels { color: wants.display_color.then_some(color), ..Channels::default() };
