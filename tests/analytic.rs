@@ -5,7 +5,7 @@ mod scene;
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{AlphaMode, ColorInput, LightKind, MaterialDesc, ScalarInput, VolumeDesc};
+use penumbra::desc::{AlphaMode, Attribute, ColorInput, LightKind, MaterialDesc, ScalarInput, VolumeDesc};
 use penumbra::math::{DAffine3, DVec3};
 use penumbra::settings::{EffectsMode, Integrator, Settings};
 use scene::{Builder, close, mean, picture, settings};
@@ -60,6 +60,31 @@ fn a_plane_under_a_constant_dome_reflects_its_albedo() {
     assert_eq!(mean(&picture, "Shadow", 0), 1.0);
     assert_eq!(mean(&picture, "Ambient Occlusion", 0), 1.0);
     assert_eq!(mean(&picture, "Diffuse Indirect", 0), 0.0);
+}
+
+#[test]
+fn an_instance_has_a_color_of_its_own_where_its_mesh_has_none() {
+    let mut builder = Builder::default();
+    let blend = MaterialDesc {
+        base_color: ColorInput::constant([0.6; 3]),
+        specular: ScalarInput::constant(0.0),
+        alpha_mode: AlphaMode::Blend,
+        ..MaterialDesc::default()
+    };
+    let material = builder.material(blend);
+    builder.ground(10.0, material);
+    builder.desc.instances[0].color = Some([1.0, 0.5, 0.0, 0.25]);
+    builder.dome(2.0);
+    builder.look([0.0; 3], DOWN, 0.1);
+    let picture = picture(&builder.desc, 4, &settings("combined,diffuse_color", 256));
+    for (channel, albedo) in [0.6, 0.3, 0.0].into_iter().enumerate() {
+        close("Diffuse Color", mean(&picture, "Diffuse Color", channel), 0.25 * albedo, 1e-2);
+    }
+    // Vertex colours come first.
+    let colors = vec![[0.5, 0.5, 0.5, 1.0]; builder.desc.meshes[0].points.len()];
+    builder.desc.meshes[0].colors = Some(Attribute::Point(colors));
+    let picture = self::picture(&builder.desc, 4, &settings("combined,diffuse_color", 16));
+    close("Diffuse Color", mean(&picture, "Diffuse Color", 1), 0.3, 1e-5);
 }
 
 #[test]

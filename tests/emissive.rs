@@ -10,8 +10,8 @@ mod scene;
 use std::f64::consts::PI;
 
 use penumbra::desc::{
-    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, Filter, ImageDesc, MaterialDesc, MeshDesc, PixelData,
-    ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
+    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, Filter, ImageDesc, InstanceDesc, MaterialDesc, MeshDesc,
+    PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
 };
 use penumbra::math::{DAffine3, DVec3, Vec3};
 use penumbra::settings::Settings;
@@ -28,14 +28,24 @@ enum Open {
     Blend(f64),
     /// The alpha of the vertices.
     Vertices(f64),
+    /// The alpha of the instance.
+    Instance(f64),
     /// A mask whose texture has the half x < 0.
     Mask,
     /// A blend whose texture fades from 1 at the left to 0 at the right.
     Fade,
 }
 
-const CASES: [Open; 7] =
-    [Open::Not, Open::Blend(0.99), Open::Blend(0.5), Open::Blend(0.01), Open::Vertices(0.25), Open::Mask, Open::Fade];
+const CASES: [Open; 8] = [
+    Open::Not,
+    Open::Blend(0.99),
+    Open::Blend(0.5),
+    Open::Blend(0.01),
+    Open::Vertices(0.25),
+    Open::Instance(0.25),
+    Open::Mask,
+    Open::Fade,
+];
 
 /// Ground below a square of 0.1 m, one metre up, that glows.
 fn square(open: Open) -> Builder {
@@ -60,7 +70,7 @@ fn square(open: Open) -> Builder {
     let (alpha, alpha_mode) = match open {
         Open::Not => (ScalarInput::constant(1.0), AlphaMode::Opaque),
         Open::Blend(alpha) => (ScalarInput::constant(alpha), AlphaMode::Blend),
-        Open::Vertices(_) => (ScalarInput::constant(1.0), AlphaMode::Blend),
+        Open::Vertices(_) | Open::Instance(_) => (ScalarInput::constant(1.0), AlphaMode::Blend),
         Open::Mask => (textured, AlphaMode::Mask { cutoff: 0.5 }),
         Open::Fade => (textured, AlphaMode::Blend),
     };
@@ -84,6 +94,13 @@ fn square(open: Open) -> Builder {
         ..MeshDesc::default()
     };
     builder.instance(mesh, glow, DAffine3::IDENTITY);
+    if let Open::Instance(alpha) = open {
+        // Another instance of the same mesh and materials stands far away and is shut.
+        let shut = builder.desc.instances.last().unwrap().clone();
+        let transform = DAffine3::from_translation(DVec3::new(0.0, -1e6, 0.0));
+        builder.desc.instances.insert(0, InstanceDesc { transform, color: Some([1.0, 1.0, 1.0, 0.0]), ..shut });
+        builder.desc.instances.last_mut().unwrap().color = Some([1.0, 1.0, 1.0, alpha as f32]);
+    }
     builder.look([0.0; 3], [0.7, -0.7, 0.0], 1e-3);
     builder
 }
@@ -96,7 +113,7 @@ fn exact(open: Open) -> f64 {
     };
     let share = match open {
         Open::Not => strip(-HALF, HALF),
-        Open::Blend(alpha) | Open::Vertices(alpha) => alpha * strip(-HALF, HALF),
+        Open::Blend(alpha) | Open::Vertices(alpha) | Open::Instance(alpha) => alpha * strip(-HALF, HALF),
         Open::Mask => strip(-HALF, 0.0),
         // Symmetric about the origin.
         Open::Fade => 0.5 * strip(-HALF, HALF),

@@ -87,8 +87,10 @@ mod scene {
                 .value_name("LIST")
                 .value_delimiter(',')
                 .value_parser(["render", "proxy", "guide"])
-                .default_value("render")
-                .help("Purposes of USD prims to show beside those without one, as render,guide"),
+                .help(
+                    "Purposes of USD prims to show beside those without one, as render,guide [default: those of the \
+                     stage's render settings, else render]",
+                ),
             Arg::new("subdivision")
                 .long("subdivision")
                 .value_name("N")
@@ -133,7 +135,7 @@ mod scene {
             frame,
             variants: args.get_many("variant").into_iter().flatten().cloned().collect(),
             light_units,
-            purposes: args.get_many::<String>("purpose").into_iter().flatten().map(|name| purpose(name)).collect(),
+            purposes: args.get_many::<String>("purpose").map(|names| names.map(|name| purpose(name)).collect()),
             subdivision: args.get_one("subdivision").copied().unwrap_or(default.subdivision),
             ..default
         };

@@ -96,6 +96,9 @@ pub struct InstanceDesc {
     /// Index into `SceneDesc::materials` for each slot; a slot without entry, or with `None`, has
     /// the default material.
     pub materials: Vec<Option<u32>>,
+    /// Its colour, linear, straight alpha, where the mesh has no vertex colours; multiplied onto the base
+    /// colour as those are.
+    pub color: Option<[f32; 4]>,
     /// Value of the object index pass.
     pub object_index: u32,
     /// What graphs ask the object for.

@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use exr::image::{AnyChannel, FlatSamples};
+use exr::meta::attribute::AttributeValue;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use half::f16;
 
@@ -47,6 +48,20 @@ pub(super) fn decode(bytes: &[u8], name: &Arc<str>, place: &Place) -> Result<Ima
         });
     }
     Err(Error::invalid(place, "the OpenEXR image has no channels R, G, B or Y"))
+}
+
+/// Where the picture stands in the world: the matrix that takes a row vector to the screen, −1 to 1. OpenEXR
+/// has a name of its own for it; OpenImageIO writes either.
+pub(super) fn world_to_screen(bytes: &[u8]) -> Option<[f32; 16]> {
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).ok()?;
+    meta.headers.iter().find_map(|header| {
+        let attributes = &header.own_attributes;
+        let other = attributes.other.iter().find(|(name, _)| *name == "worldtoscreen").map(|(_, value)| value);
+        match other {
+            Some(AttributeValue::Matrix4x4(matrix)) => Some(*matrix),
+            _ => attributes.world_to_normalized_device,
+        }
+    })
 }
 
 /// Colour channels of one layer of names: that without prefix, else the first that has any.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
 use super::exr_image;
+pub(super) use super::exr_image::world_to_screen;
 use crate::desc::{ColorSpace, ImageDesc, PixelData};
 use crate::error::{Error, Place, Result};
 

@@ -44,8 +44,9 @@ pub struct ImportOptions {
     pub light_units: LightUnits,
     /// How often subdivision surfaces are refined.
     pub subdivision: u32,
-    /// Which of USD's purposes are shown beside `default`.
-    pub purposes: Vec<Purpose>,
+    /// Which of USD's purposes are shown beside `default`; `None` for those that the stage's own render
+    /// settings include, `render` where they say nothing.
+    pub purposes: Option<Vec<Purpose>>,
 }
 
 /// Purposes of USD prims that a render may show or not.
@@ -67,7 +68,7 @@ impl Default for ImportOptions {
             variants: Vec::new(),
             light_units: LightUnits::Spec,
             subdivision: 2,
-            purposes: vec![Purpose::Render],
+            purposes: None,
         }
     }
 }

@@ -125,9 +125,11 @@ pub(super) fn is_opaque(scene: &SceneDesc, material: &MaterialDesc) -> bool {
 
 fn has_vertex_alpha(scene: &SceneDesc) -> bool {
     use crate::desc::Attribute::{Corner, Point};
-    scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).any(|colors| match colors {
+    let of_meshes = |colors: &crate::desc::Attribute<[f32; 4]>| match colors {
         Point(values) | Corner(values) => values.iter().any(|c| c[3] < 1.0),
-    })
+    };
+    scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).any(of_meshes)
+        || scene.instances.iter().filter_map(|instance| instance.color).any(|c| c[3] < 1.0)
 }
 
 /// True where some light can be refracted into the material.

@@ -88,6 +88,7 @@ mod tests {
             transform: DAffine3::from_translation(DVec3::new(1e5, 0.0, 0.0)),
             motion: Vec::new(),
             materials: vec![],
+            color: None,
             object_index: 0,
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,

@@ -62,6 +62,8 @@ pub struct Instance {
     pub mirrored: bool,
     /// Material of each slot.
     pub materials: Box<[u32]>,
+    /// Linear, straight alpha; in place of the vertex colours that its mesh lacks.
+    pub color: Option<[f32; 4]>,
     /// Index of the light that its emissive triangles form.
     pub light: Option<u32>,
     /// Its class among the receivers that light linking tells apart.

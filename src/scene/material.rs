@@ -149,7 +149,8 @@ impl Scene {
     }
 
     fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
-        self.mesh(&self.instances[it.instance as usize]).color(it.triangle, it.barycentrics)
+        let instance = &self.instances[it.instance as usize];
+        self.mesh(instance).color(it.triangle, it.barycentrics).or(instance.color)
     }
 
     /// Share of light that the surface stops or scatters at `it`; the rest passes.

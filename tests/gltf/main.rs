@@ -12,6 +12,8 @@ mod glb;
 mod lights;
 mod materials;
 mod mutation;
+#[path = "../support/rng.rs"]
+mod rng;
 
 use penumbra::desc::{Attribute, SceneDesc, check};
 use penumbra::error::{Error, Place, Warnings};

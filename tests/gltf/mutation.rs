@@ -9,22 +9,7 @@ use serde_json::{Value, json};
 
 use super::glb::Glb;
 use super::read;
-
-/// xorshift64*.
-struct Rng(u64);
-
-impl Rng {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() >> 33) as usize % n.max(1)
-    }
-}
+use super::rng::Rng;
 
 /// JSON pointers of everything in `value`.
 fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
@@ -100,7 +85,7 @@ fn surprise(old: &Value, rng: &mut Rng) -> Value {
     let kind = if rng.below(12) == 0 { rng.below(4) } else { 4 };
     match (kind, old) {
         (0, _) => [Value::Null, json!([]), json!({}), json!(true)][rng.below(4)].clone(),
-        (1, _) | (4, Value::String(_)) => json!(words[rng.below(words.len())]),
+        (1, _) | (4, Value::String(_)) => json!(rng.one(&words)),
         (4, Value::Array(list)) => list.iter().map(|v| surprise(v, rng)).collect(),
         (4, Value::Object(map)) => {
             let key = map.keys().nth(rng.below(map.len())).cloned().unwrap_or_default();
@@ -108,7 +93,7 @@ fn surprise(old: &Value, rng: &mut Rng) -> Value {
         }
         // Small integers are indices that exist and types that fit; the others are more daring.
         _ if rng.below(2) == 0 => numbers[rng.below(9)].clone(),
-        _ => numbers[rng.below(numbers.len())].clone(),
+        _ => rng.one(&numbers).clone(),
     }
 }
 

@@ -99,12 +99,33 @@ def judge_shapes(stage, answer, found):
             found.check(near(ours, world), path, f"stands at\n{ours}\nand not at\n{world}")
         if is_mesh and faces is not None:
             judge_mesh(stage, prim, faces, instances[0], answer, found)
+    judge_stand_ins(stage, answer, left, found)
     expected = stage.instanced()
     if expected is not None:
-        ours = [np.reshape(i["matrix"], 16) for instances in left.values() for i in instances]
-        expected = [matrix.reshape(16) for matrix in expected]
+        row = lambda matrix, color: np.concatenate([np.reshape(matrix, 16), color])
+        ours = [row(i["matrix"], i["color"] or np.zeros(4)) for instances in left.values() for i in instances]
+        expected = [row(matrix, color) for matrix, color in expected]
         same = len(ours) == len(expected) and near(rows(ours), rows(expected), 2e-5) if ours or expected else True
         found.check(same, "/", f"{len(ours)} other instances ({sorted(left)[:5]}), not the {len(expected)} of USD")
+
+
+def judge_stand_ins(stage, answer, left, found):
+    for prim in stage.stand_ins():
+        path, mode = str(prim.GetPath()), stage.draw_mode(prim)
+        instances = left.pop(path, [])
+        if len(instances) != 1:
+            found.check(answer.warned(path), path, f"is drawn as {mode} by {len(instances)} instances")
+            continue
+        world = stage.world(prim)
+        found.check(near(np.reshape(instances[0]["matrix"], (4, 4)), world), path, "stands elsewhere")
+        points = np.array(answer.meshes[instances[0]["mesh"]]["points"], dtype=float)
+        ours = np.array([points.min(axis=0), points.max(axis=0)])
+        expected = np.array([[0.0] * 3, [1.0] * 3]) if mode == "origin" else stage.bounds(prim)
+        thickness = np.linalg.norm(expected[1] - expected[0]) / 200
+        # Cards across the middle reach no further than those that are there.
+        ok = (expected[0] - thickness <= ours[0]).all() and (ours[1] <= expected[1] + thickness).all()
+        tight = np.abs(ours - expected).max() <= thickness or mode == "cards"
+        found.check(ok and tight, path, f"is drawn as {mode} within\n{ours}\nnot\n{expected}")
 
 
 def judge_mesh(stage, prim, faces, instance, answer, found):

@@ -40,18 +40,41 @@ class Stage:
         return not invisible and imageable.ComputePurpose() not in (UsdGeom.Tokens.proxy, UsdGeom.Tokens.guide)
 
     def prims(self):
-        """All that can be seen; what is in a point instancer is seen through it alone."""
+        """All that can be seen; what is in a point instancer is seen through it alone, and what a draw mode
+        replaces is not."""
         walk = iter(Usd.PrimRange.Stage(self.stage, Usd.TraverseInstanceProxies()))
         for prim in walk:
-            if prim.IsA(UsdGeom.PointInstancer):
+            if prim.IsA(UsdGeom.PointInstancer) or self.draw_mode(prim):
                 walk.PruneChildren()
             yield prim
+
+    # Draw modes
+
+    def draw_mode(self, prim):
+        """How a model is drawn instead of itself; `None` where it is drawn itself."""
+        if prim.IsPseudoRoot() or not prim.IsModel():
+            return None
+        api = UsdGeom.ModelAPI(prim)
+        mode, apply = api.ComputeModelDrawMode(), api.GetModelApplyDrawModeAttr()
+        applies = apply.Get() if apply and apply.HasAuthoredValue() else prim.IsComponent()
+        return mode if applies and mode in ("bounds", "origin", "cards") else None
+
+    def stand_ins(self):
+        return [prim for prim in self.prims() if self.draw_mode(prim) and self.visible(prim)]
+
+    def bounds(self, prim):
+        """Smallest and largest corner in the space of `prim`."""
+        tokens = UsdGeom.Tokens
+        cache = UsdGeom.BBoxCache(self.time, [tokens.default_, tokens.render, tokens.proxy], True)
+        box = cache.ComputeUntransformedBound(prim).ComputeAlignedRange()
+        return np.array([box.GetMin(), box.GetMax()])
 
     def of_type(self, *types):
         return [prim for prim in self.prims() if prim.GetTypeName() in types]
 
     def gprims(self):
-        return [prim for prim in self.prims() if prim.IsA(UsdGeom.Gprim) and self.visible(prim)]
+        shown = lambda prim: prim.IsA(UsdGeom.Gprim) and self.visible(prim) and not self.draw_mode(prim)
+        return [prim for prim in self.prims() if shown(prim)]
 
     def bound(self, prim):
         """The material that is bound to `prim`, if it has a surface."""
@@ -76,8 +99,8 @@ class Stage:
         counts, indices = get(mesh.GetFaceVertexCountsAttr(), int), get(mesh.GetFaceVertexIndicesAttr(), int)
         if counts.sum() != len(indices) or (len(indices) and not (0 <= indices.min() and indices.max() < len(points))):
             return None
-        smooth = mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none
-        holes = set(get(mesh.GetHoleIndicesAttr(), int)) if smooth else set()
+        # Hydra leaves them out of meshes that are not subdivided as well.
+        holes = set(get(mesh.GetHoleIndicesAttr(), int))
         ends = np.cumsum(counts)
         kept = [(i, indices[ends[i] - n : ends[i]]) for i, n in enumerate(counts) if n >= 3 and i not in holes]
         return points, kept
@@ -117,7 +140,8 @@ class Stage:
     # Point instancers
 
     def instanced(self):
-        """The world matrix of every gprim that point instancers show; `None` where they are nested."""
+        """The world matrix of every gprim or stand-in that point instancers show, and the color that its
+        instance has, 0 where its material or the prototype has its own; `None` where they are nested."""
         matrices = []
         for prim in self.of_type("PointInstancer"):
             if not self.visible(prim):
@@ -131,18 +155,55 @@ class Stage:
                 continue
             mask = instancer.ComputeMaskAtTime(self.time) or [True] * count
             prototypes = [self.stage.GetPrimAtPath(path) for path in instancer.GetPrototypesRel().GetForwardedTargets()]
-            for index, place, shown in zip(instancer.GetProtoIndicesAttr().Get(self.time), places, mask):
+            colors = self.instance_colors(prim, count)
+            indices = instancer.GetProtoIndicesAttr().Get(self.time)
+            for index, place, shown, color in zip(indices, places, mask, colors):
                 if not shown or not 0 <= index < len(prototypes) or not prototypes[index]:
                     continue
                 root = prototypes[index]
                 from_root = np.linalg.inv(np.array(self.xforms.GetLocalToWorldTransform(root)))
-                for inner in Usd.PrimRange(root, Usd.TraverseInstanceProxies(Usd.PrimIsActive)):
+                walk = iter(Usd.PrimRange(root, Usd.TraverseInstanceProxies(Usd.PrimIsActive)))
+                for inner in walk:
                     if inner.IsA(UsdGeom.PointInstancer):
                         return None
-                    if inner.IsA(UsdGeom.Gprim) and self.visible(inner):
+                    mode = self.draw_mode(inner)
+                    if mode:
+                        walk.PruneChildren()
+                    if (mode or inner.IsA(UsdGeom.Gprim)) and self.visible(inner):
                         local = np.array(self.xforms.GetLocalToWorldTransform(inner)) @ from_root
-                        matrices.append(local @ np.array(place) @ self.world(prim))
+                        matrix = local @ np.array(place) @ self.world(prim)
+                        own = mode or self.bound(inner) or self.has_color(inner, root)
+                        matrices.append((matrix, np.zeros(4) if own else color))
         return matrices
+
+    def instance_colors(self, prim, count):
+        """displayColor and displayOpacity of each instance: primvars as those of a cloud of points, else
+        what is inherited."""
+        api = UsdGeom.PrimvarsAPI(prim)
+        values = []
+        for name, fallback in (("displayColor", [0.5] * 3), ("displayOpacity", [1.0])):
+            primvar = api.FindPrimvarWithInheritance(name)
+            found = primvar.ComputeFlattened(self.time) if primvar else None
+            if not found:
+                values.append(None)
+                continue
+            found = np.array(found, dtype=float).reshape(len(found), -1)
+            of_all = primvar.GetInterpolation() in ("constant", "uniform")
+            values.append(np.repeat(found[:1], count, axis=0) if of_all else found)
+        if values[0] is None and values[1] is None:
+            return [np.zeros(4)] * count
+        color = values[0] if values[0] is not None else np.full((count, 3), 0.5)
+        opacity = values[1] if values[1] is not None else np.ones((count, 1))
+        return list(np.hstack([color[:count], opacity[:count]]))
+
+    def has_color(self, prim, root):
+        """True where `prim` or one above it up to `root` has colors."""
+        while prim and prim.GetPath().HasPrefix(root.GetPath()):
+            api = UsdGeom.PrimvarsAPI(prim)
+            if any(api.GetPrimvar(name).HasAuthoredValue() for name in ("displayColor", "displayOpacity")):
+                return True
+            prim = prim.GetParent()
+        return False
 
     # Lights
 

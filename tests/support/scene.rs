@@ -53,6 +53,7 @@ impl Builder {
             transform,
             motion: Vec::new(),
             materials: vec![Some(material)],
+            color: None,
             object_index: self.desc.instances.len() as u32 + 1,
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,

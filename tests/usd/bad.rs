@@ -53,3 +53,59 @@ fn a_root_layer_that_can_t_be_read_is_an_error_that_names_it() {
     std::fs::write(dir.path().join("not.usdz"), "PK").unwrap();
     assert!(error(&dir.path().join("not.usdz")).contains("not.usdz: can't be opened as USD"));
 }
+
+#[test]
+fn schemas_that_do_nothing_are_told() {
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Mesh "Mesh" ( prepend apiSchemas = ["MaterialBindingAPI_7", "CollectionAPI_9:some", "StudioAPI_3", "MotionAPI"] )
+{
+    int[] faceVertexCounts = [3]
+    int[] faceVertexIndices = [0, 1, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    uniform token subdivisionScheme = "none"
+}
+def "Nothing" ( prepend apiSchemas = ["MeshLightAPI"] )
+{
+}
+def "Newer" ( prepend apiSchemas = ["LightAPI_2"] )
+{
+}
+def Xform "Group" ( prepend apiSchemas = ["LightAPI"] )
+{
+    float inputs:intensity = 3
+}
+def Sphere "Blocked"
+{
+    double radius.timeSamples = { 0: None }
+}
+def Cylinder "Typed"
+{
+    string radius = "wide"
+    double height = 0
+}
+def Cube "Flat"
+{
+    double size = 0
+}
+"#;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    std::fs::write(&path, text).unwrap();
+    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
+    let told = [
+        "/Mesh: has MaterialBindingAPI_7, a version of MaterialBindingAPI that is not known; it is ignored",
+        "/Mesh: has CollectionAPI_9:some, a version of CollectionAPI that is not known; it is ignored",
+        "/Nothing: is a light by LightAPI alone, without type or shape; it does not shine",
+        "/Newer: has LightAPI_2, a version of LightAPI that is not known; it is ignored",
+        "/Group: LightAPI on a prim of type Xform has no shape to shine; it is ignored",
+        "/Blocked: there is no number in its radius; the shape is left out",
+        "/Typed: there is no number in its radius; the shape is left out",
+        "/Flat: the shape has no extent; it is left out",
+    ];
+    for what in told {
+        loaded.said_of(what);
+    }
+    assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
+    assert_eq!(loaded.paths(), ["/Mesh"]);
+}

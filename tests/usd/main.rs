@@ -5,9 +5,13 @@ mod bad;
 mod bindings;
 mod composition;
 mod corpus;
+mod draw_modes;
+mod instance_colors;
 mod instances;
 mod large;
 mod mutation;
+#[path = "../support/rng.rs"]
+mod rng;
 mod shown;
 mod times;
 

@@ -71,6 +71,7 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
             .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
             .collect::<Vec<_>>(),
         "materials": instance.materials.iter().map(material).collect::<Vec<_>>(),
+        "color": instance.color,
         "visibility": visibility(instance.visibility),
         "links": links(&instance.links, scene),
     })

@@ -151,6 +151,7 @@ impl BlenderScene {
                 motion: Vec::new(),
                 materials: data.materials.clone(),
                 object_index: data.pass_index,
+                color: None,
                 visibility: data.visibility.into(),
                 links: LightLinks::default(),
                 info: ObjectInfo {

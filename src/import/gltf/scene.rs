@@ -316,6 +316,7 @@ impl Builder<'_> {
                     transform,
                     motion: Vec::new(),
                     materials: vec![part.material],
+                    color: None,
                     object_index: placed.node as u32 + 1,
                     info: ObjectInfo::default(),
                     visibility: penumbra.visible(Visibility::ALL),

@@ -9,6 +9,8 @@ use openusd::sdf::{self, Path, Value};
 use openusd::tf::Token;
 use openusd::usd::{Prim, PrimDefinition};
 
+use super::schemas;
+
 /// What is known of the prim that was asked last.
 #[derive(Default)]
 pub(super) struct Authored {
@@ -24,6 +26,8 @@ pub(super) struct Authored {
     clipped: Option<bool>,
     /// The same for prims that have children.
     known: HashMap<Path, bool>,
+    /// What is to be told of API schemas in versions that are not known here.
+    pub unknown: Vec<(Path, String)>,
 }
 
 impl Authored {
@@ -77,7 +81,11 @@ impl Authored {
             let of_type = prim.stage().schema_registry().concrete_prim_definition(&kind);
             let definition = match of_type.filter(|_| self.is_plain(prim)) {
                 Some(definition) => Some(definition.clone()),
-                None => prim.prim_definition().ok(),
+                None => {
+                    let info = prim.prim_type_info().ok();
+                    self.unknown.extend(info.iter().flat_map(|info| schemas::unknown_versions(prim, info)));
+                    info.map(|info| info.prim_definition().clone())
+                }
             };
             self.definition = Some(definition);
         }

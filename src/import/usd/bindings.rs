@@ -1,5 +1,5 @@
 //! Which material is bound to a prim, by the rules of UsdShadeMaterialBindingAPI: the purpose `full` before
-//! all-purpose bindings, a near binding before a far one unless that is the stronger, collections before
+//! all-purpose bindings unless the render settings say otherwise, a near binding before a far one unless that is the stronger, collections before
 //! what is bound directly.
 //!
 //! `compute_bound_material` climbs to the root for every prim that is asked; here a prim hands its
@@ -17,8 +17,8 @@ use super::stage::Reading;
 /// What every binding's name starts with.
 const BINDING: &str = "material:binding";
 
-/// `full`, then all-purpose.
-type ByPurpose<T> = [T; 2];
+/// In the order of `Reading::binding_purposes`.
+type ByPurpose<T> = Box<[T]>;
 
 /// A material and whether it is stronger than what is bound below.
 #[derive(Clone)]
@@ -57,33 +57,32 @@ impl Winner {
 impl Bindings {
     /// `above` with what `prim`, whose authored properties are `names`, binds.
     pub fn of(reading: &Reading<'_>, prim: &Prim, names: &[Token], above: Option<Rc<Self>>) -> Option<Rc<Self>> {
-        let mut direct = [None, None];
-        let mut collections = [Vec::new(), Vec::new()];
+        let mut direct = vec![None; reading.binding_purposes.len()];
+        let mut collections = vec![Vec::new(); reading.binding_purposes.len()];
         for name in names {
             let Some(rest) = name.strip_prefix(BINDING) else { continue };
             let parts: Vec<&str> = rest.split(':').skip(1).collect();
-            let purpose = |name: &str| if name == "full" { Some(0) } else { None };
-            match parts.as_slice() {
-                [] if rest.is_empty() => direct[1] = direct_of(prim, name),
-                [named] => {
-                    if let Some(purpose) = purpose(named) {
-                        direct[purpose] = direct_of(prim, name);
-                    }
-                }
-                ["collection", named, _] => {
-                    if let Some(purpose) = purpose(named) {
-                        collections[purpose].extend(collection_of(reading, prim, name));
-                    }
-                }
-                ["collection", ..] => collections[1].extend(collection_of(reading, prim, name)),
-                _ => {}
+            let (named, by_collection) = match parts.as_slice() {
+                [] if rest.is_empty() => ("", false),
+                ["collection", named, _] => (*named, true),
+                ["collection", ..] => ("", true),
+                [named] => (*named, false),
+                _ => continue,
+            };
+            let Some(purpose) = reading.binding_purposes.iter().position(|known| known.as_str() == named) else {
+                continue;
+            };
+            if by_collection {
+                collections[purpose].extend(collection_of(reading, prim, name));
+            } else {
+                direct[purpose] = direct_of(prim, name);
             }
         }
         if direct.iter().all(Option::is_none) && collections.iter().all(Vec::is_empty) {
             return above;
         }
         let by_member = collections.iter().any(|c| !c.is_empty()) || above.as_ref().is_some_and(|a| a.by_member);
-        Some(Rc::new(Self { above, direct, collections, by_member }))
+        Some(Rc::new(Self { above, direct: direct.into(), collections: collections.into(), by_member }))
     }
 
     /// Adds what this chain says of the prim at `path`, the root first.
@@ -162,7 +161,7 @@ pub(super) fn bound(
     scope: Option<&Rc<Scope>>,
     path: &Path,
 ) -> Option<Path> {
-    for purpose in [0, 1] {
+    for purpose in 0..reading.binding_purposes.len() {
         let mut winner = Winner::default();
         if let Some(scope) = scope {
             scope.fold(purpose, path, &mut winner);

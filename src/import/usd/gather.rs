@@ -10,6 +10,7 @@ use openusd::sdf::Path;
 use super::bindings::{self, Bindings, Scope};
 use super::inherit::{Clock, Pose};
 use super::light::ShapeLight;
+use super::shape::tint::Tint;
 use super::shape::{self, Source};
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
@@ -62,6 +63,15 @@ pub(super) struct Found {
     pub pose: Pose,
     /// Name of its asset.
     pub asset: Option<Arc<str>>,
+    /// Where it has no colours of its own.
+    pub color: Option<Tint>,
+}
+
+impl Found {
+    /// What it is made by: its look, and whether it has a colour.
+    pub fn key(&self) -> (*const Look, bool) {
+        (Arc::as_ptr(&self.look), self.color.is_some())
+    }
 }
 
 /// Everything that is shown, parents before children.
@@ -80,7 +90,7 @@ pub(super) struct Gatherer<'r, 'a> {
     /// True for the types that are no shapes.
     aside: fn(&str) -> bool,
     known: HashMap<(*const Leaf, *const Scope), Known>,
-    shapes: HashMap<(Path, Vec<Path>), Option<Rc<Subsets>>>,
+    shapes: HashMap<(Path, Vec<Path>, bool), Option<Rc<Subsets>>>,
 }
 
 /// A look, and what keeps the addresses that it is known by.
@@ -116,7 +126,7 @@ impl<'r, 'a> Gatherer<'r, 'a> {
                 look
             });
             if let Some(look) = look {
-                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset });
+                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset, color: one.color });
             }
         }
     }
@@ -124,25 +134,31 @@ impl<'r, 'a> Gatherer<'r, 'a> {
     fn look(&mut self, shown: &Shown, number: usize, batch: &mut Vec<Read>) -> Option<Look> {
         let reading = self.walk.reading;
         let leaf = &*shown.leaf;
-        let material = |bindings: Option<&Rc<Bindings>>, path: &Path| {
-            bindings::bound(reading, bindings, shown.scope.as_ref(), path)
+        let material = |bindings: Option<&Rc<Bindings>>, path: &Path| match leaf.stand_in {
+            // Nothing is bound to cards: their materials are the attributes that name their pictures.
+            Some(_) => path.is_property_path().then(|| path.clone()),
+            None => bindings::bound(reading, bindings, shown.scope.as_ref(), path),
         };
         reading.recall(&leaf.prim, &leaf.names, &leaf.kind.type_name);
         let shape = if (self.aside)(&leaf.kind.name) {
             None
         } else {
             let primvars: Vec<Path> = leaf.primvars.iter().map(|p| p.attribute().path().clone()).collect();
-            let key = (leaf.prim.path().clone(), primvars);
+            let key = (leaf.prim.path().clone(), primvars, leaf.stand_in.is_some());
             let known = self.shapes.entry(key.clone());
             let read = known.or_insert_with(|| {
-                let source = shape::read(reading, &leaf.prim, &leaf.primvars)?;
+                let source = match &leaf.stand_in {
+                    Some(stand_in) => Source::StandIn(Box::new(stand_in.clone())),
+                    None => shape::read(reading, &leaf.prim, &leaf.primvars)?,
+                };
                 let each = source.subsets().iter().map(|path| (path.clone(), subset(reading, leaf, path))).collect();
                 batch.push(Read { prim: key.0, primvars: key.1, source: Some(source) });
                 Some(Rc::new(Subsets { shape: (number, batch.len() - 1), each }))
             });
             let read = read.as_ref()?;
             let subsets = read.each.iter().map(|(path, bindings)| material(bindings.as_ref(), path)).collect();
-            let light = ShapeLight::of(reading, &leaf.prim, &shown.path);
+            let shines = leaf.stand_in.is_none();
+            let light = shines.then(|| ShapeLight::of(reading, &leaf.prim, &shown.path)).flatten();
             Some(ShapeLook { shape: read.shape, subsets, light })
         };
         Some(Look {

@@ -9,6 +9,7 @@ use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::Primvar;
 
 use super::bindings::Bindings;
+use super::draw_mode::DrawMode;
 use super::kinds::Kind;
 use super::stage::Reading;
 use super::xform::Xform;
@@ -69,6 +70,8 @@ pub(super) struct Context {
     pub asset: Option<Arc<str>>,
     /// True where a child may be a model.
     pub group: bool,
+    /// How models are drawn instead of themselves.
+    pub draw_mode: Option<DrawMode>,
 }
 
 impl Context {
@@ -83,18 +86,20 @@ impl Context {
             bindings: None,
             asset: None,
             group: true,
+            draw_mode: None,
         }
     }
 
     /// True where nothing but a camera is of use.
     pub fn hidden(&self, reading: &Reading<'_>) -> bool {
         let Some(purpose) = self.purpose else { return self.invisible };
-        self.invisible || self.hidden_purposes[index(purpose)] || !reading.options.purposes.contains(&purpose)
+        self.invisible || self.hidden_purposes[index(purpose)] || !reading.purposes.contains(&purpose)
     }
 
-    /// True where the same prims below both are hidden.
+    /// True where the same prims below both are hidden or replaced.
     pub fn shows_like(&self, other: &Self) -> bool {
-        self.invisible == other.invisible
+        self.draw_mode == other.draw_mode
+            && self.invisible == other.invisible
             && self.purpose == other.purpose
             && self.hidden_purposes == other.hidden_purposes
     }
@@ -118,6 +123,7 @@ impl Context {
             match name.as_str() {
                 "xformOpOrder" if kind.xformable => inner.pose = self.pose_of(clock, prim, names),
                 "visibility" if kind.imageable => inner.invisible |= token(reading, prim, name) == "invisible",
+                "model:drawMode" => inner.draw_mode = DrawMode::of(reading, prim, self.draw_mode),
                 "purpose" if kind.imageable => inner.purpose = self.purpose_of(reading, prim, name),
                 "renderVisibility" | "proxyVisibility" | "guideVisibility" if kind.imageable => {
                     let at =

@@ -8,6 +8,7 @@ use openusd::sdf;
 use openusd::usd::{Prim, TimeCode};
 
 use super::inherit::{Context, Mover, Pose};
+use super::shape::tint::{self, Tint};
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
 use crate::math::{DAffine3, DMat3, DQuat, DVec3};
@@ -24,7 +25,8 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         return;
     }
     let prototypes = prototypes(walk, prim, context);
-    let of = |index: &i32| usize::try_from(*index).ok().and_then(|index| prototypes.get(index)).map_or(0, |p| p.len());
+    let of =
+        |index: &i32| usize::try_from(*index).ok().and_then(|index| prototypes.get(index)).map_or(0, |p| p.shown.len());
     if !walk.affords(indices.iter().map(of).fold(0, usize::saturating_add), prim) {
         return;
     }
@@ -32,10 +34,7 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         let what = format!("has {count} protoIndices but another number of positions; its instances are left out");
         return reading.warn(prim.path(), what);
     };
-    let colored = |name: &str| prim.attribute(name).has_authored_value().unwrap_or(false);
-    if ["primvars:displayColor", "primvars:displayOpacity"].into_iter().any(colored) {
-        reading.warn(prim.path(), "displayColor and displayOpacity of single instances are not shown");
-    }
+    let colors = tint::of_instances(reading, prim, count);
     let motion = motion(walk, prim, count);
     let mask = mask(reading, prim, count);
     let mut lost = 0;
@@ -49,10 +48,11 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         };
         let moved = motion.as_ref().map(|at| at.iter().map(|places| places[i]).collect());
         let place = context.pose.place(&Pose { motion: moved, ..Pose::still(places[i]) });
-        for inner in prototype.iter() {
+        let color = colors.as_ref().map(|colors| colors[i]).or(prototype.color);
+        for inner in prototype.shown.iter() {
             let pose = place.place(&inner.pose);
             let asset = inner.asset.clone().or_else(|| context.asset.clone());
-            walk.show(Shown { pose, asset, ..inner.clone() }, shown);
+            walk.show(Shown { pose, asset, color: inner.color.or(color), ..inner.clone() }, shown);
         }
     }
     if lost > 0 {
@@ -61,22 +61,33 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
     }
 }
 
-/// What each of the prototypes shows, where its root stands as if alone.
-fn prototypes(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context) -> Vec<Rc<Vec<Shown>>> {
+/// A prototype, where its root stands as if alone.
+struct Prototype {
+    shown: Rc<Vec<Shown>>,
+    /// What its prims inherit from above it, where the instancer has no colours.
+    color: Option<Tint>,
+}
+
+fn prototypes(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context) -> Vec<Prototype> {
     let reading = walk.reading;
     let targets = prim.relationship("prototypes").forwarded_targets().unwrap_or_default();
-    let of = |path: sdf::Path| match walk.prototypes.pointed.get(&path) {
-        Some(Some(known)) => known.clone(),
-        Some(None) => {
-            reading.warn(prim.path(), format!("is within its own prototype {path}; that is left out"));
-            Rc::default()
-        }
-        None => {
-            walk.prototypes.pointed.insert(path.clone(), None);
-            let found = Rc::new(prototype(walk, prim, context, &path));
-            walk.prototypes.pointed.insert(path, Some(found.clone()));
-            found
-        }
+    let of = |path: sdf::Path| {
+        let above = walk.context_at(&path.parent().unwrap_or_default());
+        let color = tint::inherited(reading, &above.primvars);
+        let shown = match walk.prototypes.pointed.get(&path) {
+            Some(Some(known)) => known.clone(),
+            Some(None) => {
+                reading.warn(prim.path(), format!("is within its own prototype {path}; that is left out"));
+                Rc::default()
+            }
+            None => {
+                walk.prototypes.pointed.insert(path.clone(), None);
+                let found = Rc::new(prototype(walk, prim, context, &path));
+                walk.prototypes.pointed.insert(path, Some(found.clone()));
+                found
+            }
+        };
+        Prototype { shown, color }
     };
     targets.into_iter().map(of).collect()
 }
@@ -100,6 +111,7 @@ fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path:
     within.pose = Pose::still(DAffine3::IDENTITY);
     within.asset = None;
     within.group = false;
+    within.primvars = tint::without(&within.primvars);
     within.purpose = within.purpose.or(context.purpose);
     let mut shown = Vec::new();
     if let Some(inner) = walk.enter(&root, &within, true, &mut shown) {

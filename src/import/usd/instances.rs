@@ -34,7 +34,7 @@ pub(super) fn place(
     let mut names = Names::default();
     let mut shining = HashMap::new();
     for (number, found) in found.iter().enumerate() {
-        let Some(dressed) = shapes.by_look.get(&Arc::as_ptr(&found.look)) else { continue };
+        let Some(dressed) = shapes.by_look.get(&found.key()) else { continue };
         let Some(Some((mesh, copies))) = meshes.get(dressed.shape) else { continue };
         if !usable(&found.pose.world) {
             reading.warn(&found.path, "its transform is singular or not finite; it is left out");
@@ -47,6 +47,7 @@ pub(super) fn place(
             None => dressed.materials.clone(),
         };
         let (name, place, asset) = names.of(reading, found);
+        let takes_color = dressed.takes_color && scene.meshes[*mesh as usize].colors.is_none();
         let instance = InstanceDesc {
             name,
             place,
@@ -55,6 +56,7 @@ pub(super) fn place(
             transform: found.pose.world,
             motion: moving(times, &found.pose),
             materials,
+            color: found.color.filter(|_| takes_color),
             object_index: number as u32 + 1,
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,

@@ -10,6 +10,7 @@ use openusd_schemas::geom::Primvar;
 
 use super::bindings::Scope;
 use super::inherit::{Context, Pose};
+use super::shape::tint;
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
 use crate::math::DAffine3;
@@ -34,6 +35,9 @@ struct Prototype {
 pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, shown: &mut Vec<Shown>) {
     let reading = walk.reading;
     let Some(root) = prim.prototype().ok().flatten() else { return };
+    // A colour from outside does not make it another prototype.
+    let color = tint::inherited(reading, &context.primvars);
+    let context = Context { primvars: tint::without(&context.primvars), ..context };
     let known = walk.prototypes.native.get(&root);
     let first = known.map_or(prim, |known| &known.first).clone();
     let like = known.and_then(|known| known.shown.iter().find(|(other, _)| alike(reading, other, &context)));
@@ -72,7 +76,8 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
         let path = inner.path.replace_prefix(&walked, prim.path()).unwrap_or_else(|| inner.path.clone());
         let asset = inner.asset.clone().or_else(|| context.asset.clone());
         let pose = context.pose.place(&inner.pose);
-        walk.show(Shown { leaf: inner.leaf.clone(), path, pose, asset, scope: Some(scope) }, shown);
+        let color = inner.color.or(color);
+        walk.show(Shown { leaf: inner.leaf.clone(), path, pose, asset, scope: Some(scope), color }, shown);
     }
 }
 

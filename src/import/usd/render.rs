@@ -2,11 +2,13 @@
 //! product says instead, and the passes of all products.
 
 use openusd::sdf::{self, Value};
+use openusd::tf::Token;
 use openusd::usd::Prim;
 
 use super::stage::Reading;
 use super::values::Values;
 use crate::desc::RenderDesc;
+use crate::import::Purpose;
 
 /// What the stage says of its own render.
 pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
@@ -29,9 +31,12 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         values.warn(format!("{count} products: the passes of all go to one file, seen and named as the first says"));
     }
     tell_what_is_not_rendered(&values);
-    for (name, instead) in [("includedPurposes", "--purpose decides"), ("materialBindingPurposes", "full is taken")] {
-        if is_authored(values.prim, name) {
-            values.warn(format!("{name} is not honoured: {instead}"));
+    if let Some(purposes) = tokens(&values, "includedPurposes") {
+        if !purposes.iter().any(|purpose| purpose == "default") && reading.options.purposes.is_none() {
+            values.warn("includedPurposes leaves out default: what has no other purpose is shown all the same");
+        }
+        for other in purposes.iter().filter(|purpose| *purpose != "default" && shown(purpose).is_none()) {
+            values.warn(format!("includedPurposes names \"{other}\", which is no purpose: it is ignored"));
         }
     }
     if let Some(product) = &product {
@@ -49,6 +54,42 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         product: name.map(Into::into),
         ..RenderDesc::default()
     }
+}
+
+/// What the settings say of purposes, or their fallbacks.
+pub(super) struct Purposes {
+    /// What is shown beside `default`.
+    pub shown: Vec<Purpose>,
+    /// Of material bindings, the strongest first.
+    pub bindings: Vec<Token>,
+}
+
+impl Purposes {
+    /// Those of the stage's own settings.
+    pub fn of(reading: &Reading<'_>) -> Self {
+        let settings = settings(reading);
+        let values = settings.as_ref().map(|(path, prim)| Values { reading, prim, path });
+        let authored = |name: &str| values.as_ref().and_then(|values| tokens(values, name));
+        let included = authored("includedPurposes");
+        Self {
+            shown: included.map_or_else(|| vec![Purpose::Render], |names| names.iter().filter_map(shown).collect()),
+            bindings: authored("materialBindingPurposes").unwrap_or_else(|| vec!["full".into(), "".into()]),
+        }
+    }
+}
+
+fn shown(name: &Token) -> Option<Purpose> {
+    match name.as_str() {
+        "render" => Some(Purpose::Render),
+        "proxy" => Some(Purpose::Proxy),
+        "guide" => Some(Purpose::Guide),
+        _ => None,
+    }
+}
+
+/// The tokens that are authored.
+fn tokens(values: &Values<'_>, name: &str) -> Option<Vec<Token>> {
+    is_authored(values.prim, name).then(|| values.reading.value(values.prim, name)).flatten()
 }
 
 /// The RenderSettings that the stage's metadata name.

@@ -1,7 +1,6 @@
 //! Shapes, built on all threads: each once for what its materials want of it, however often it is placed.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use openusd::sdf::Path;
 use openusd_schemas::geom::Primvar;
@@ -19,6 +18,8 @@ pub(super) struct Dressed {
     pub shape: usize,
     /// Material of each slot.
     pub materials: Vec<Option<u32>>,
+    /// True where those show the colour of the shape or, where it has none, of the instance.
+    pub takes_color: bool,
 }
 
 /// All shapes, and how each look is made of them.
@@ -26,7 +27,8 @@ pub(super) struct Dressed {
 pub(super) struct Shapes {
     /// `None` where nothing is left.
     pub built: Vec<Option<Built>>,
-    pub by_look: HashMap<*const Look, Dressed>,
+    /// Of looks in places with a colour and without.
+    pub by_look: HashMap<(*const Look, bool), Dressed>,
 }
 
 /// A shape to be built.
@@ -49,13 +51,14 @@ pub(super) fn build(
     let mut known: HashMap<((usize, usize), Wants), usize> = HashMap::new();
     let mut alike: HashMap<(Likeness, Wants), usize> = HashMap::new();
     for one in found {
-        let key = Arc::as_ptr(&one.look);
+        let key = one.key();
         let Some(look) = &one.look.shape else { continue };
         if shapes.by_look.contains_key(&key) {
             continue;
         }
         let slots = slots(&one.look, look, materials);
-        let wants = wants(materials, &slots);
+        let wants = wants(materials, &slots, one.color.is_some());
+        let takes_color = wants.display_color;
         let shape = *known.entry((look.shape, wants.clone())).or_insert_with(|| {
             let read = reads.get_mut(look.shape.0).and_then(|batch| batch.get_mut(look.shape.1));
             let source = read.and_then(|read| read.source.take().or_else(|| again(reading, read)));
@@ -68,7 +71,7 @@ pub(super) fn build(
             }
             number
         });
-        shapes.by_look.insert(key, Dressed { shape, materials: slots });
+        shapes.by_look.insert(key, Dressed { shape, materials: slots, takes_color });
     }
     let subdivision = reading.options.subdivision;
     let place = &reading.place;
@@ -108,7 +111,7 @@ fn slots(look: &Look, shape: &ShapeLook, materials: &mut Materials<'_>) -> Vec<O
 }
 
 /// What those materials need of a shape.
-fn wants(materials: &Materials<'_>, slots: &[Option<u32>]) -> Wants {
+fn wants(materials: &Materials<'_>, slots: &[Option<u32>], colored: bool) -> Wants {
     let each = || slots.iter().flatten().copied();
     // The UV pass shows the first set, whatever the materials use.
     let used: Vec<u32> = each().flat_map(|m| materials.used_uv_sets(m)).collect();
@@ -117,12 +120,14 @@ fn wants(materials: &Materials<'_>, slots: &[Option<u32>]) -> Wants {
         let looked_at = set == 0 || used.contains(&set);
         if looked_at { materials.uv_sets[set as usize].clone() } else { "".into() }
     };
+    // Colours of a mesh are those of all of it: they must not tint a material that has its own.
+    let display_color = each().all(|m| tinted(materials, m));
     Wants {
         uv_sets: (0..sets as u32).map(name).collect(),
         spare_first_set: !used.contains(&0),
         tangents: each().find_map(|m| materials.tangent_uv_set(m)),
-        // Colours of a mesh are those of all of it: they must not tint a material that has its own.
-        display_color: each().all(|m| tinted(materials, m)),
+        display_color,
+        instance_color: display_color && colored,
     }
 }
 

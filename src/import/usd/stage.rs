@@ -14,8 +14,9 @@ use super::super::ImportOptions;
 use super::authored::Authored;
 use super::files::Files;
 use super::units::Units;
-use super::{cycles, diagnostics, variants};
+use super::{cycles, diagnostics, render, variants};
 use crate::error::{Error, Place, Result, Warnings};
+use crate::import::Purpose;
 use crate::math::DAffine3;
 
 /// A composed stage, the time at which it is read, and how its space lies in ours.
@@ -36,6 +37,10 @@ pub(super) struct Reading<'a> {
     /// True for files that Blender wrote, by the root layer's own metadata; some of their values mean
     /// something else than UsdLux says.
     pub blender: bool,
+    /// Purposes that are shown beside `default`.
+    pub purposes: Vec<Purpose>,
+    /// Purposes of the material bindings that count, the strongest first; empty for all-purpose ones.
+    pub binding_purposes: Vec<Token>,
     /// How many of its layers were searched for cycles.
     pub layers: Cell<usize>,
     /// What was told so far.
@@ -67,7 +72,7 @@ impl<'a> Reading<'a> {
         // What the metadata that files call `doc` is named in memory.
         let doc = stage.field::<sdf::Value>(&root, "documentation").ok().flatten();
         let blender = matches!(doc, Some(sdf::Value::String(text)) if text.starts_with("Blender v"));
-        let reading = Self {
+        let mut reading = Self {
             stage,
             time,
             shutter: Cell::new(None),
@@ -76,6 +81,8 @@ impl<'a> Reading<'a> {
             meters: units.meters,
             to_world: units.to_world(),
             blender,
+            purposes: Vec::new(),
+            binding_purposes: Vec::new(),
             layers: Cell::new(0),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
@@ -84,6 +91,9 @@ impl<'a> Reading<'a> {
         };
         cycles::mend(&reading);
         variants::select(&reading.stage, &options.variants, &reading.place)?;
+        let included = render::Purposes::of(&reading);
+        reading.purposes = options.purposes.clone().unwrap_or(included.shown);
+        reading.binding_purposes = included.bindings;
         Ok(reading)
     }
 
@@ -97,9 +107,12 @@ impl<'a> Reading<'a> {
         self.warnings.borrow_mut().push(&self.place_of(path), what);
     }
 
-    /// Tells of what could not be composed, which is known once everything was read.
+    /// Tells of what could not be composed and of schemas that are not known, once everything was read.
     pub fn warn_of_composition(&self) {
         diagnostics::tell(self);
+        for (path, what) in self.authored.borrow_mut().unknown.drain(..) {
+            self.warn(&path, what);
+        }
     }
 
     /// Takes note of what is known of `prim`, the one that is asked next: its authored properties and type.

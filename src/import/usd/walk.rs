@@ -14,8 +14,10 @@ use super::cycles;
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
 use super::prototypes::Prototypes;
+use super::shape::StandIn;
+use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{instancer, prototypes};
+use super::{draw_mode, instancer, prototypes, schemas};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -49,6 +51,8 @@ pub(super) struct Leaf {
     pub visible: bool,
     /// True where a collection may say what the light that it emits reaches.
     pub linked: bool,
+    /// What is drawn in its place.
+    pub stand_in: Option<StandIn>,
 }
 
 /// One of them.
@@ -62,6 +66,8 @@ pub(super) struct Shown {
     pub asset: Option<Arc<str>>,
     /// The instances that it is in.
     pub scope: Option<Rc<Scope>>,
+    /// The colour of the innermost of them that has one.
+    pub color: Option<Tint>,
 }
 
 /// A walk of the stage, or of a part of it.
@@ -72,6 +78,10 @@ pub(super) struct Walk<'r, 'a> {
     /// Instances that are left to another walk, and how many prims were shown before them; `None` where
     /// they are shown at once.
     pub later: Option<Vec<(usize, Path)>>,
+    /// What stands in for models, by how it looks.
+    pub stand_ins: HashMap<String, Rc<Leaf>>,
+    /// True while bounds are computed, for which nothing stands in for anything.
+    pub measuring: bool,
     kinds: Kinds,
     contexts: HashMap<Path, Rc<Context>>,
     count: usize,
@@ -79,8 +89,18 @@ pub(super) struct Walk<'r, 'a> {
 
 impl<'r, 'a> Walk<'r, 'a> {
     pub fn new(clock: Clock<'r, 'a>) -> Self {
-        let (prototypes, kinds, contexts) = Default::default();
-        Self { reading: clock.reading, clock, prototypes, later: None, kinds, contexts, count: 0 }
+        let (prototypes, kinds, contexts, stand_ins) = Default::default();
+        Self {
+            reading: clock.reading,
+            clock,
+            prototypes,
+            later: None,
+            stand_ins,
+            measuring: false,
+            kinds,
+            contexts,
+            count: 0,
+        }
     }
 
     /// Everything in the stage, parents before children.
@@ -174,7 +194,12 @@ impl<'r, 'a> Walk<'r, 'a> {
         }
         let names = reading.names(prim);
         let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
-        self.warn_of_draw_mode(prim, &names);
+        if kind.role == Role::Group {
+            schemas::tell_of_shapeless(reading, prim, &kind, &names);
+        }
+        if draw_mode::replace(self, prim, &kind, &names, [context, &inner], shown) {
+            return None;
+        }
         if is_instance {
             inner.hand_down_primvars(reading, prim, &names);
             prototypes::instance(self, prim, inner, shown);
@@ -194,7 +219,8 @@ impl<'r, 'a> Walk<'r, 'a> {
         Some(inner)
     }
 
-    fn leaf(
+    /// Adds `prim` itself, whose parent hands down `outer`.
+    pub fn leaf(
         &mut self,
         prim: &Prim,
         kind: &Kind,
@@ -217,9 +243,11 @@ impl<'r, 'a> Walk<'r, 'a> {
             bindings: inner.bindings.clone(),
             visible: !hidden,
             linked: names.iter().any(is_link),
+            stand_in: None,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
-        self.show(Shown { leaf: Rc::new(leaf), path, pose: inner.pose.clone(), asset, scope: None }, shown);
+        let (leaf, pose) = (Rc::new(leaf), inner.pose.clone());
+        self.show(Shown { leaf, path, pose, asset, scope: None, color: None }, shown);
     }
 
     /// Adds one.
@@ -247,18 +275,6 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// True where no more can be added.
     pub fn full(&self) -> bool {
         self.count > MOST_PRIMS
-    }
-
-    fn warn_of_draw_mode(&self, prim: &Prim, names: &[Token]) {
-        if !names.iter().any(|name| name.as_str() == "model:drawMode") {
-            return;
-        }
-        let Some(mode) = self.reading.value::<Token>(prim, "model:drawMode") else { return };
-        let applied = self.reading.value::<bool>(prim, "model:applyDrawMode") == Some(true);
-        let is_mode = matches!(mode.as_str(), "bounds" | "origin" | "cards");
-        if is_mode && (applied || prim.is_component().unwrap_or(false)) {
-            self.reading.warn(prim.path(), format!("draw mode '{mode}' is not drawn; the prim's geometry is"));
-        }
     }
 }
 

@@ -24,6 +24,8 @@ struct MaterialEmission {
     textures: Arc<Vec<Texture>>,
     /// By material slot.
     slots: Box<[Slot]>,
+    /// Of the instance's colour, where the mesh has none.
+    alpha: f32,
 }
 
 /// Emission of a material.
@@ -62,7 +64,7 @@ impl MaterialEmission {
         let Slot { alpha, alpha_texture, .. } = *self.slot(triangle);
         let texel = alpha_texture
             .map_or(1.0, |(input, channel)| self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]);
-        alpha * texel * self.mesh.color(triangle, barycentrics).map_or(1.0, |color| color[3])
+        alpha * texel * self.mesh.color(triangle, barycentrics).map_or(self.alpha, |color| color[3])
     }
 
     fn is_constant(&self, triangle: u32) -> bool {
@@ -102,8 +104,8 @@ impl Emission for MaterialEmission {
     }
 }
 
-/// The emitters of a mesh under a list of materials; `None` where nothing is emitted.
-type Known = HashMap<(u32, Box<[u32]>), Option<Arc<MeshEmitters>>>;
+/// The emitters of a mesh under a list of materials and the bits of an alpha; `None` where nothing is emitted.
+type Known = HashMap<(u32, Box<[u32]>, u32), Option<Arc<MeshEmitters>>>;
 
 /// Emissive meshes as lights, one by one: instances of the same mesh with the same materials share
 /// their emitters.
@@ -122,9 +124,11 @@ impl<'a> Emissive<'a> {
     /// The light that the emissive triangles of `instance` form; `None` where it has none.
     pub fn light(&mut self, instance: &Instance, mesh: &Arc<Mesh>) -> Option<MeshLight> {
         let (materials, textures) = (self.materials, self.textures);
-        let emitters = self.known.entry((instance.mesh, instance.materials.clone())).or_insert_with(|| {
+        let alpha = instance.color.map_or(1.0, |color| color[3]);
+        let key = (instance.mesh, instance.materials.clone(), alpha.to_bits());
+        let emitters = self.known.entry(key).or_insert_with(|| {
             let slots = instance.materials.iter().map(|&m| slot(&materials[m as usize], textures)).collect();
-            let emission = MaterialEmission { mesh: mesh.clone(), textures: textures.clone(), slots };
+            let emission = MaterialEmission { mesh: mesh.clone(), textures: textures.clone(), slots, alpha };
             MeshEmitters::new(mesh.clone(), Arc::new(emission)).map(Arc::new)
         });
         MeshLight::new(emitters.clone()?, instance.object_to_render)

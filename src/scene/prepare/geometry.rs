@@ -123,6 +123,7 @@ fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32)
         ),
         mirrored: to_render.matrix3.determinant() < 0.0,
         materials,
+        color: desc.color,
         light: None,
         receiver_class: 0,
         rules: None,

@@ -5,6 +5,7 @@
 //! .mtlx document ─┴─► network ─► model: inputs as expressions ─► surface ─┴─ value of a graph ─► MaterialDesc
 //! ```
 
+mod card;
 mod closure;
 mod color;
 mod evaluate;
@@ -117,7 +118,7 @@ impl<'a> Materials<'a> {
         self.images.preload(files);
     }
 
-    /// Index of the material at `path`; `None`, with a warning, where there is none that can be read:
+    /// Index of the material at `path`, or of the card whose picture that attribute names; `None`, with a warning, where there is none that can be read:
     /// what is bound to it looks as if nothing were.
     pub fn at(&mut self, path: &sdf::Path) -> Option<u32> {
         if let Some(&known) = self.known.get(path) {
@@ -230,6 +231,9 @@ impl<'a> Materials<'a> {
     /// The networks of the material at `path`, best first.
     fn gather(&self, path: &sdf::Path) -> Vec<Found> {
         let reading = self.reading;
+        if path.is_property_path() {
+            return card::network(reading, path).into_iter().collect();
+        }
         let material = schema::Material::get(&reading.stage, path.clone()).ok().flatten();
         let mut found = Vec::new();
         for context in CONTEXTS {

@@ -59,7 +59,7 @@ impl Builder<'_, '_> {
             self.reading.warn(prim.path(), format!("its network is deeper than {DEEPEST} nodes; cut off here"));
             return None;
         }
-        let id = self.text(&prim.attribute("info:id")).unwrap_or_default();
+        let id = raw(self.reading, &prim.attribute("info:id")).and_then(text_of).unwrap_or_default();
         let (name, kind) = category(&id);
         let node = Node {
             category: name.to_string(),
@@ -91,32 +91,29 @@ impl Builder<'_, '_> {
         let color_space = [attribute, &producer]
             .into_iter()
             .find_map(|a| a.get_metadata::<sdf::Value>("colorSpace").ok().flatten().and_then(text_of));
-        Input { value: self.value(&producer), source: None, color_space }
+        Input { value: value(self.reading, &producer), source: None, color_space }
     }
+}
 
-    fn raw(&self, attribute: &Attribute) -> Option<sdf::Value> {
-        match attribute.get_at::<sdf::Value>(self.reading.time) {
-            Ok(value) => value,
-            Err(error) => {
-                self.reading.warn(attribute.path(), format!("{error}; taken for not authored"));
-                None
-            }
-        }
+/// The value of an attribute.
+pub(super) fn value(reading: &Reading<'_>, attribute: &Attribute) -> Option<Value> {
+    let value = raw(reading, attribute)?;
+    if let sdf::Value::AssetPath(asset) = value {
+        let layer = attribute.property_stack().ok().and_then(|stack| stack.into_iter().next());
+        return Some(Value::File(File::find(&asset, layer.as_ref().map(|site| site.layer.as_str()))));
     }
-
-    fn text(&self, attribute: &Attribute) -> Option<String> {
-        self.raw(attribute).and_then(text_of)
+    match numbers_of(&value) {
+        Some((numbers, count)) => Some(Value::Numbers(numbers, count)),
+        None => text_of(value).map(Value::Text),
     }
+}
 
-    fn value(&self, attribute: &Attribute) -> Option<Value> {
-        let value = self.raw(attribute)?;
-        if let sdf::Value::AssetPath(asset) = value {
-            let layer = attribute.property_stack().ok().and_then(|stack| stack.into_iter().next());
-            return Some(Value::File(File::find(&asset, layer.as_ref().map(|site| site.layer.as_str()))));
-        }
-        match numbers_of(&value) {
-            Some((numbers, count)) => Some(Value::Numbers(numbers, count)),
-            None => text_of(value).map(Value::Text),
+fn raw(reading: &Reading<'_>, attribute: &Attribute) -> Option<sdf::Value> {
+    match attribute.get_at::<sdf::Value>(reading.time) {
+        Ok(value) => value,
+        Err(error) => {
+            reading.warn(attribute.path(), format!("{error}; taken for not authored"));
+            None
         }
     }
 }

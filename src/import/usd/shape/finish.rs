@@ -96,8 +96,9 @@ impl Surface {
                 None => Attribute::Point(vec![[0.0, 1.0]; points.len()]),
             });
         }
-        // What has no displayColor is grey, as in usdview.
-        let grey = || wants.display_color.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
+        // What has no displayColor has that of its instance, or is grey, as in usdview.
+        let is_grey = wants.display_color && !(wants.instance_color && opacity.is_none());
+        let grey = || is_grey.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
         let color = color.map(|c| spread.attribute(c)).or_else(grey);
         let colors = colors(color, opacity.map(|o| spread.attribute(o)), &triangles);
         let material_slots = slots.map(|slots| match &triangles.faces {
@@ -131,7 +132,7 @@ impl Surface {
 }
 
 /// Colour of shapes that are to show theirs and have none (UsdImaging's fallback).
-const UNCOLORED: [f32; 3] = [0.5; 3];
+pub(super) const UNCOLORED: [f32; 3] = [0.5; 3];
 
 /// Lays values over triangles.
 struct Spread<'a> {

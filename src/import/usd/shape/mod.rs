@@ -16,13 +16,17 @@ mod primitive;
 mod primvar;
 mod profile;
 mod segments;
+mod stand_in;
 mod subdivide;
 mod subsets;
+pub(super) mod tint;
 mod triangulate;
 mod tube;
 mod values;
 
 pub(super) use primitive::Likeness;
+pub(super) use stand_in::{CARDS_UV, Quad, StandIn, StandInShape};
+
 use std::sync::Arc;
 
 use openusd::sdf;
@@ -40,6 +44,7 @@ pub(super) enum Source {
     Curves(Box<curves::Curves>),
     Points(Box<points::Points>),
     Primitive(Box<primitive::Primitive>),
+    StandIn(Box<StandIn>),
 }
 
 /// What the materials of a shape need of it.
@@ -53,6 +58,8 @@ pub(super) struct Wants {
     pub tangents: Option<u32>,
     /// displayColor and displayOpacity as colours of the mesh.
     pub display_color: bool,
+    /// True where instances have colours, which take the place of those that the shape lacks.
+    pub instance_color: bool,
 }
 
 /// A gprim as it is traced.
@@ -73,10 +80,11 @@ impl Source {
         }
     }
 
-    /// Paths of the GeomSubsets that a material may be bound to.
+    /// Paths of the GeomSubsets that a material may be bound to, and of what stands for them.
     pub fn subsets(&self) -> &[sdf::Path] {
         match self {
             Self::Mesh(mesh) => &mesh.subsets.paths,
+            Self::StandIn(stand_in) => &stand_in.textures,
             _ => &[],
         }
     }
@@ -118,6 +126,7 @@ pub(super) fn build(
         Source::Curves(curves) => curves.build(wants, place, warnings),
         Source::Points(points) => points.build(wants, place, warnings),
         Source::Primitive(primitive) => primitive.build(wants, place, warnings),
+        Source::StandIn(stand_in) => stand_in.build(wants, place, warnings),
     }
 }
 

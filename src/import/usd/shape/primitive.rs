@@ -38,8 +38,17 @@ pub(in super::super) struct Likeness(Discriminant<Shape>, Axis, [u64; 3]);
 /// The primitive `prim` of schema `kind`; `None` for other kinds, and, with a warning, for one without
 /// extent.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Primitive> {
+    let lacking = std::cell::RefCell::new(Vec::new());
     // A size below 0 means nothing in the schema; Hydra draws the shape inside out.
-    let size = |name: &str| reading.value::<f64>(prim, name).filter(|v| v.is_finite()).map_or(0.0, f64::abs);
+    let size = |name: &'static str| {
+        reading.value::<f64>(prim, name).filter(|v| v.is_finite()).map_or_else(
+            || {
+                lacking.borrow_mut().push(name);
+                0.0
+            },
+            f64::abs,
+        )
+    };
     let (shape, has_extent) = match kind {
         "Cube" => {
             let size = size("size");
@@ -73,6 +82,14 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         }
         _ => return None,
     };
+    let mut lacking = lacking.into_inner();
+    lacking.dedup();
+    if !lacking.is_empty() {
+        // Blocked, of another type, or not finite.
+        let what = format!("there is no number in its {}; the shape is left out", lacking.join(" and "));
+        reading.warn(prim.path(), what);
+        return None;
+    }
     if !has_extent {
         reading.warn(prim.path(), "the shape has no extent; it is left out");
         return None;
