@@ -223,6 +223,7 @@ mod tests {
                     transform: DAffine3::IDENTITY,
                     motion: Vec::new(),
                     materials: Vec::new(),
+                    color: None,
                     object_index: 0,
                     visibility: crate::desc::Visibility::ALL,
                     links: LightLinks::default(),
