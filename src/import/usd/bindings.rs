@@ -1,6 +1,6 @@
 //! Which material is bound to a prim, by the rules of UsdShadeMaterialBindingAPI: the purpose `full` before
-//! all-purpose bindings unless the render settings say otherwise, a near binding before a far one unless that is the stronger, collections before
-//! what is bound directly.
+//! all-purpose bindings unless the render settings say otherwise, a near binding before a far one unless
+//! that is the stronger, collections before what is bound directly.
 //!
 //! `compute_bound_material` climbs to the root for every prim that is asked; here a prim hands its
 //! bindings down to its children.

@@ -107,10 +107,8 @@ fn along(t: f32, forwards: bool) -> f32 {
 /// UsdImaging, the top of the picture is at the bottom of that screen.
 pub(super) fn from_textures(reading: &Reading<'_>, pictures: &[Picture]) -> Vec<Quad> {
     let quad = |(texture, picture): (usize, &Picture)| {
-        let matrix = matrix(&picture.asset).unwrap_or_else(|what| {
-            reading.warn(&picture.attribute, format!("{what}; the card is left out"));
-            None
-        })?;
+        let left_out = |what| reading.warn(&picture.attribute, format!("{what}; the card is left out"));
+        let matrix = matrix(&picture.asset).map_err(left_out).ok()?;
         let corners = [[-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]];
         let points = corners.map(|[x, y]| matrix.project_point3(DVec3::new(x, y, 0.0)).as_vec3().to_array());
         let uvs = corners.map(|[x, y]| [0.5 * (1.0 + x as f32), 0.5 * (1.0 - y as f32)]);
@@ -124,7 +122,7 @@ pub(super) fn from_textures(reading: &Reading<'_>, pictures: &[Picture]) -> Vec<
 }
 
 /// From the screen to the model's space.
-fn matrix(asset: &AssetPath) -> Result<Option<DMat4>, String> {
+fn matrix(asset: &AssetPath) -> Result<DMat4, String> {
     let file = match File::find(asset, None) {
         File::One(file) => file,
         File::Tiles(_) => return Err("a card can't be made of tiles".to_string()),
@@ -133,5 +131,5 @@ fn matrix(asset: &AssetPath) -> Result<Option<DMat4>, String> {
     let matrix = world_to_screen(&images::bytes(&file)?);
     // Rows of USD are columns here.
     let matrix = matrix.ok_or_else(|| format!("{file} says no worldtoscreen matrix, which only OpenEXR files can"))?;
-    Ok(Some(DMat4::from_cols_array(&matrix.map(f64::from)).inverse()))
+    Ok(DMat4::from_cols_array(&matrix.map(f64::from)).inverse())
 }

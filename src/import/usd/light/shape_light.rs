@@ -224,6 +224,7 @@ mod tests {
                     transform: DAffine3::IDENTITY,
                     motion: Vec::new(),
                     materials: Vec::new(),
+                    color: None,
                     object_index: 0,
                     info: crate::desc::ObjectInfo::default(),
                     visibility: crate::desc::Visibility::ALL,
