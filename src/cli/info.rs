@@ -3,8 +3,10 @@
 mod lights;
 mod values;
 
+use std::collections::HashMap;
+
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use penumbra::desc::{ProjectionDesc, SceneDesc};
+use penumbra::desc::{ProjectionDesc, SceneDesc, ShapeRef};
 use penumbra::error::Warnings;
 use serde_json::{Value, json};
 
@@ -47,16 +49,16 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
 
 /// Everything that both forms of the report say.
 fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
-    let triangles = |mesh: u32| scene.meshes[mesh as usize].triangles.len();
-    let mut users = vec![0_u64; scene.meshes.len()];
+    let mut users: HashMap<ShapeRef, u64> = HashMap::new();
     for instance in &scene.instances {
-        users[instance.mesh as usize] += 1;
+        *users.entry(instance.shape).or_default() += 1;
     }
+    let users = |shape: ShapeRef| users.get(&shape).copied().unwrap_or_default();
     let meshes: Vec<Value> = scene
         .meshes
         .iter()
-        .zip(&users)
-        .map(|(mesh, users)| {
+        .zip(0..)
+        .map(|(mesh, i)| {
             json!({
                 "name": &*mesh.name,
                 "points": mesh.points.len(),
@@ -65,15 +67,31 @@ fn describe(scene: &SceneDesc, warnings: &Warnings) -> Value {
                 "uv_sets": mesh.uvs.len(),
                 "tangents": mesh.tangents.is_some(),
                 "colors": mesh.colors.is_some(),
-                "instances": users,
+                "instances": users(ShapeRef::Mesh(i)),
+            })
+        })
+        .collect();
+    let rounds: Vec<Value> = scene
+        .rounds
+        .iter()
+        .zip(0..)
+        .map(|(rounds, i)| {
+            json!({
+                "name": &*rounds.name,
+                "points": rounds.points.len(),
+                "strands": rounds.strands.len(),
+                "uv_sets": rounds.uvs.len(),
+                "colors": rounds.colors.is_some(),
+                "instances": users(ShapeRef::Rounds(i)),
             })
         })
         .collect();
     json!({
         "scene": scene.place.to_string(),
         "triangles": scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>(),
-        "instanced_triangles": scene.instances.iter().map(|i| triangles(i.mesh)).sum::<usize>(),
+        "instanced_triangles": scene.instances.iter().filter_map(|i| scene.mesh(i)).map(|m| m.triangles.len()).sum::<usize>(),
         "meshes": meshes,
+        "rounds": rounds,
         "instances": scene.instances.len(),
         "materials": scene.materials.iter().map(|m| json!({ "name": &*m.name })).collect::<Vec<_>>(),
         "textures": scene.textures.len(),
@@ -137,6 +155,16 @@ fn page(info: &Value) -> String {
     }
     if meshes.len() > MOST_MESHES {
         line(format!("  and {} meshes more; --json lists all", meshes.len() - MOST_MESHES));
+    }
+    for rounds in list("rounds").iter().take(MOST_MESHES) {
+        let what = match rounds["strands"].as_u64() {
+            Some(0) => "balls".to_string(),
+            _ => format!("points in {} strands", rounds["strands"]),
+        };
+        line(format!("  {}: {} {what}, {} instances", rounds["name"], rounds["points"], rounds["instances"]));
+    }
+    if list("rounds").len() > MOST_MESHES {
+        line(format!("  and {} sets of strands or balls more", list("rounds").len() - MOST_MESHES));
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
     line(format!("  {} materials: {}", names.len(), names.join(", ")));
