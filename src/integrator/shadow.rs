@@ -79,6 +79,6 @@ pub fn mesh_weight(scene: &Scene, last: &Scattering, it: &crate::scene::Interact
     let Some(light) = scene.instance(it.instance).light else { return 1.0 };
     let wi = -it.wo;
     let dist = (it.p - last.from.p).dot(wi);
-    let hit = EmitterHit { dist, ng: it.ng, triangle: it.triangle, uv: it.barycentrics };
+    let hit = EmitterHit { dist, ng: it.ng, triangle: it.primitive, uv: it.at };
     last.mis_weight(scene, light, wi, Some(&hit))
 }

@@ -4,7 +4,8 @@ use crate::math::Rgb;
 
 /// How a surface emits.
 pub trait Emission: Send + Sync + std::fmt::Debug {
-    /// Emitted radiance, W·sr⁻¹·m⁻². On a mesh light, at `(1 − u − v) p0 + u p1 + v p2` of `triangle`;
+    /// Emitted radiance, W·sr⁻¹·m⁻². On a mesh light, at `(1 − u − v) p0 + u p1 + v p2` of `triangle`, on a
+    /// round one at the coordinates `uv` of that segment;
     /// on a rectangle, whose triangle is 0, at texture coordinates `uv`, v down from the top.
     fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
 

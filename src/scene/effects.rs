@@ -125,10 +125,11 @@ pub(super) fn is_opaque(scene: &SceneDesc, material: &MaterialDesc) -> bool {
 
 fn has_vertex_alpha(scene: &SceneDesc) -> bool {
     use crate::desc::Attribute::{Corner, Point};
-    let of_meshes = |colors: &crate::desc::Attribute<[f32; 4]>| match colors {
-        Point(values) | Corner(values) => values.iter().any(|c| c[3] < 1.0),
-    };
-    scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).any(of_meshes)
+    let of_meshes = scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).map(|colors| match colors {
+        Point(values) | Corner(values) => values,
+    });
+    let of_rounds = scene.rounds.iter().filter_map(|rounds| rounds.colors.as_ref());
+    of_meshes.chain(of_rounds).flatten().any(|c| c[3] < 1.0)
         || scene.instances.iter().filter_map(|instance| instance.color).any(|c| c[3] < 1.0)
 }
 

@@ -135,12 +135,12 @@ impl Scene {
         &self.materials[it.material as usize]
     }
 
-    /// The texture behind `input` at `it`; white where the mesh lacks the UV set.
+    /// The texture behind `input` at `it`; white where the shape lacks the UV set.
     pub(super) fn look_up(&self, input: TextureRef, it: &Interaction) -> [f32; 4] {
-        let mesh = self.mesh(&self.instances[it.instance as usize]);
-        let Some(uv) = mesh.uv(input.uv_set, it.triangle, it.barycentrics) else { return [1.0; 4] };
-        let uv_area = mesh.uv_area(input.uv_set, it.triangle);
-        let footprint = if it.double_area > 0.0 { it.footprint * (uv_area / it.double_area).sqrt() } else { 0.0 };
+        let shape = self.shape(&self.instances[it.instance as usize]);
+        let Some(uv) = shape.uv(input.uv_set, it.primitive, it.at) else { return [1.0; 4] };
+        let uv_size = shape.uv_size(input.uv_set, it.primitive);
+        let footprint = if it.size > 0.0 { it.footprint * (uv_size / it.size).sqrt() } else { 0.0 };
         input.lookup(&self.textures, uv.to_array(), footprint)
     }
 
@@ -150,7 +150,7 @@ impl Scene {
 
     fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
         let instance = &self.instances[it.instance as usize];
-        self.mesh(instance).color(it.triangle, it.barycentrics).or(instance.color)
+        self.shape(instance).color(it.primitive, it.at).or(instance.color)
     }
 
     /// Share of light that the surface stops or scatters at `it`; the rest passes.

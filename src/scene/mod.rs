@@ -25,7 +25,7 @@ use crate::camera::Camera;
 use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
-use crate::shape::Mesh;
+use crate::shape::Shape;
 use crate::texture::Texture;
 
 /// Everything that a ray can ask.
@@ -51,27 +51,27 @@ pub struct Scene {
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,
-    meshes: Vec<Arc<Mesh>>,
+    shapes: Vec<Shape>,
     instances: Vec<Instance>,
     materials: Vec<Material>,
     textures: Arc<Vec<Texture>>,
 }
 
 impl Scene {
-    /// The placed mesh `i`, an index that a hit gives.
+    /// The placed shape `i`, an index that a hit gives.
     pub fn instance(&self, i: u32) -> &Instance {
         &self.instances[i as usize]
     }
 
-    /// The mesh of `instance`.
-    pub fn mesh(&self, instance: &Instance) -> &Mesh {
-        &self.meshes[instance.mesh as usize]
+    /// The shape of `instance`.
+    pub fn shape(&self, instance: &Instance) -> &Shape {
+        &self.shapes[instance.shape as usize]
     }
 
-    /// Memory of the acceleration structure, the meshes and the textures, in bytes.
+    /// Memory of the acceleration structure, the shapes and the textures, in bytes.
     pub fn bytes(&self) -> [usize; 3] {
-        let meshes = self.meshes.iter().map(|mesh| mesh.bytes()).sum();
+        let shapes = self.shapes.iter().map(Shape::bytes).sum();
         let textures = self.textures.iter().map(|texture| texture.image().bytes()).sum();
-        [self.bvh.bytes(), meshes, textures]
+        [self.bvh.bytes(), shapes, textures]
     }
 }

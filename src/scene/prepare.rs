@@ -104,7 +104,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         film_transparent,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
-        meshes: geometry.meshes,
+        shapes: geometry.shapes,
         instances: geometry.instances,
         materials,
         textures,

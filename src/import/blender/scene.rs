@@ -10,7 +10,7 @@ use super::transform::affine_of_floats;
 use super::layers::UvSets;
 use super::light::LampShader;
 use super::{camera, light, material, nodes, random, world};
-use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc};
+use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -146,7 +146,7 @@ impl BlenderScene {
                 name: data.name.as_str().into(),
                 place: desc.place.at(&data.name),
                 asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
-                mesh: index,
+                shape: ShapeRef::Mesh(index),
                 transform: affine_of_floats(&matrix),
                 motion: Vec::new(),
                 materials: data.materials.clone(),

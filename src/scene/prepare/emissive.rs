@@ -1,13 +1,13 @@
-//! Emissive meshes as lights.
+//! Emissive shapes as lights.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::light::{Emission, MeshEmitters, MeshLight};
+use crate::light::{AnyEmitter, Emission, MeshEmitters, MeshLight, RoundEmitters, RoundLight};
 use crate::math::Rgb;
 use crate::scene::material::Opacity;
 use crate::scene::{Instance, Material};
-use crate::shape::Mesh;
+use crate::shape::Shape;
 use crate::texture::{Texture, TextureRef};
 
 /// Share of the mean of a whole texture that every triangle with it counts for at least: what the few
@@ -17,10 +17,10 @@ const OF_TEXTURE: f32 = 1e-4;
 /// What the mean of a texture with any light counts for at least: coarse levels of eight bits lose it.
 const LEAST_MEAN: f32 = 1e-3;
 
-/// Emitted radiance of a mesh: of a surface that is partly open what its rays get on the mean.
+/// Emitted radiance of a shape: of a surface that is partly open what its rays get on the mean.
 #[derive(Debug)]
 struct MaterialEmission {
-    mesh: Arc<Mesh>,
+    shape: Shape,
     textures: Arc<Vec<Texture>>,
     /// By material slot.
     slots: Box<[Slot]>,
@@ -43,13 +43,13 @@ struct Slot {
 
 impl MaterialEmission {
     fn slot(&self, triangle: u32) -> &Slot {
-        &self.slots[self.mesh.slot(triangle).min(self.slots.len() - 1)]
+        &self.slots[self.shape.slot(triangle).min(self.slots.len() - 1)]
     }
 
     /// The texture behind `input`, averaged over `share` of the width of the triangle.
     fn look_up(&self, input: TextureRef, triangle: u32, barycentrics: [f32; 2], share: f32) -> [f32; 4] {
-        let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return [1.0; 4] };
-        let width = if share > 0.0 { (0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt() } else { 0.0 };
+        let Some(uv) = self.shape.uv(input.uv_set, triangle, barycentrics) else { return [1.0; 4] };
+        let width = if share > 0.0 { (0.5 * self.shape.uv_size(input.uv_set, triangle)).sqrt() } else { 0.0 };
         input.lookup(&self.textures, uv.to_array(), share * width)
     }
 
@@ -64,12 +64,12 @@ impl MaterialEmission {
         let Slot { alpha, alpha_texture, .. } = *self.slot(triangle);
         let texel = alpha_texture
             .map_or(1.0, |(input, channel)| self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]);
-        alpha * texel * self.mesh.color(triangle, barycentrics).map_or(self.alpha, |color| color[3])
+        alpha * texel * self.shape.color(triangle, barycentrics).map_or(self.alpha, |color| color[3])
     }
 
     fn is_constant(&self, triangle: u32) -> bool {
         let Slot { texture, opacity, alpha_texture, .. } = self.slot(triangle);
-        let is_evenly_open = alpha_texture.is_none() && self.mesh.colors.is_none();
+        let is_evenly_open = alpha_texture.is_none() && !self.shape.has_colors();
         texture.is_none() && (*opacity == Opacity::Opaque || is_evenly_open)
     }
 }
@@ -104,10 +104,17 @@ impl Emission for MaterialEmission {
     }
 }
 
-/// The emitters of a mesh under a list of materials and the bits of an alpha; `None` where nothing is emitted.
-type Known = HashMap<(u32, Box<[u32]>, u32), Option<Arc<MeshEmitters>>>;
+/// The emitters of a shape.
+#[derive(Clone)]
+enum Emitters {
+    Mesh(Arc<MeshEmitters>),
+    Rounds(Arc<RoundEmitters>),
+}
 
-/// Emissive meshes as lights, one by one: instances of the same mesh with the same materials share
+/// The emitters of a shape under a list of materials and the bits of an alpha; `None` where nothing is emitted.
+type Known = HashMap<(u32, Box<[u32]>, u32), Option<Emitters>>;
+
+/// Emissive shapes as lights, one by one: instances of the same shape with the same materials share
 /// their emitters.
 pub struct Emissive<'a> {
     materials: &'a [Material],
@@ -121,17 +128,26 @@ impl<'a> Emissive<'a> {
         Self { materials, textures, known: HashMap::new() }
     }
 
-    /// The light that the emissive triangles of `instance` form; `None` where it has none.
-    pub fn light(&mut self, instance: &Instance, mesh: &Arc<Mesh>) -> Option<MeshLight> {
+    /// The light that the emissive primitives of `instance` form; `None` where it has none.
+    pub fn light(&mut self, instance: &Instance, shape: &Shape) -> Option<AnyEmitter> {
         let (materials, textures) = (self.materials, self.textures);
         let alpha = instance.color.map_or(1.0, |color| color[3]);
-        let key = (instance.mesh, instance.materials.clone(), alpha.to_bits());
+        let key = (instance.shape, instance.materials.clone(), alpha.to_bits());
         let emitters = self.known.entry(key).or_insert_with(|| {
             let slots = instance.materials.iter().map(|&m| slot(&materials[m as usize], textures)).collect();
-            let emission = MaterialEmission { mesh: mesh.clone(), textures: textures.clone(), slots, alpha };
-            MeshEmitters::new(mesh.clone(), Arc::new(emission)).map(Arc::new)
+            let emission =
+                Arc::new(MaterialEmission { shape: shape.clone(), textures: textures.clone(), slots, alpha });
+            match shape {
+                Shape::Mesh(mesh) => MeshEmitters::new(mesh.clone(), emission).map(|e| Emitters::Mesh(Arc::new(e))),
+                Shape::Rounds(rounds) => {
+                    RoundEmitters::new(rounds.clone(), emission).map(|e| Emitters::Rounds(Arc::new(e)))
+                }
+            }
         });
-        MeshLight::new(emitters.clone()?, instance.object_to_render)
+        match emitters.clone()? {
+            Emitters::Mesh(emitters) => MeshLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
+            Emitters::Rounds(emitters) => RoundLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Lamps, domes and emissive meshes as lights in render space, with the rules of each.
+//! Lamps, domes and emissive shapes as lights in render space, with the rules of each.
 
 use std::sync::Arc;
 
@@ -51,10 +51,10 @@ pub fn prepare(
         }
         let rules = rules(&of.links, of.visibility);
         instance.rules = Some(Box::new(rules.clone()));
-        let mesh = &geometry.meshes[instance.mesh as usize];
-        if let Some(light) = emissive.light(instance, mesh) {
+        let shape = &geometry.shapes[instance.shape as usize];
+        if let Some(emitter) = emissive.light(instance, shape) {
             instance.light = Some(lights.len() as u32);
-            lights.push(Light { emitter: light.into(), rules });
+            lights.push(Light { emitter, rules });
         }
     }
     lights
