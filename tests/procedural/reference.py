@@ -172,9 +172,9 @@ TEXTURES = {
 
 
 def socket(sockets, name):
-    """Sockets by the name they show; 4.x calls a factor Fac."""
+    """A socket by its name or, where two share one, its identifier; 4.x calls a factor Fac."""
     for candidate in sockets:
-        if candidate.name in (name, {"Factor": "Fac"}.get(name)):
+        if name in (candidate.name, candidate.identifier) or (name, candidate.name) == ("Factor", "Fac"):
             return candidate
     raise KeyError(name)
 
@@ -209,12 +209,12 @@ def make_material(texture, chosen):
     for name, value in chosen.items():
         setattr(node, name, value)
     for name, values in texture.sockets.items():
-        target = [s for s in node.inputs if s.name == name]
-        if not target or not target[0].enabled:
+        target = socket(node.inputs, name)
+        if not target.enabled:
             continue
         attribute = tree.nodes.new("ShaderNodeAttribute")
         attribute.attribute_name = "in " + name
-        tree.links.new(attribute.outputs["Vector" if values == 3 else 2], target[0])
+        tree.links.new(attribute.outputs["Vector" if values == 3 else 2], target)
     for name, channels in texture.outputs.items():
         source = socket(node.outputs, name)
         if source.enabled:
@@ -285,7 +285,7 @@ def render(texture):
 
 def write(path, texture, inputs, outputs):
     def text(numbers):
-        return " ".join(str(np.float32(n)).removesuffix(".0") for n in numbers)
+        return " ".join(np.format_float_positional(np.float32(n), trim="-") for n in numbers)
 
     with open(path, "w") as file:
         file.write(f"# {', '.join(texture.menus[0])} | {', '.join(texture.sockets)} | {', '.join(texture.outputs)}\n")

@@ -6,7 +6,7 @@
 //! -1 to 1.
 
 use super::hash::lookup3;
-use super::round::{floor, mix, to_int, trunc};
+use super::round::{floor, fused, mix, to_int, trunc};
 
 /// Brings the noise of each number of dimensions to about -1 to 1.
 const SCALE: [f32; 4] = [0.25, 0.6616, 0.982, 0.8344];
@@ -28,8 +28,8 @@ fn repeat<const N: usize>(x: f32) -> f32 {
     if x.abs() < PERIOD {
         return x;
     }
-    // The rounded quotient in three and four dimensions matches what Cycles' vector code does.
-    let wrapped = if N < 3 { x % PERIOD } else { x - trunc(x / PERIOD) * PERIOD };
+    // In three and four dimensions Cycles takes the remainder by a rounded quotient.
+    let wrapped = if N < 3 { x % PERIOD } else { fused(-trunc(x / PERIOD), PERIOD, x) };
     wrapped + if x.abs() >= COARSE { 0.5 } else { 0.0 }
 }
 

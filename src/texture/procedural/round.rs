@@ -1,6 +1,8 @@
 //! Rounding to cells, in plain arithmetic: the baseline instruction set has no rounding instruction,
 //! and a library call would cost more than the rest of a cell's lookup.
 
+use crate::math::Vec3;
+
 /// From here on a float has no fraction.
 const WHOLE: f32 = 8_388_608.0;
 
@@ -24,6 +26,18 @@ pub fn to_int(x: f32) -> i32 {
 /// The cell that `x` lies in.
 pub fn cell(x: f32) -> i32 {
     to_int(floor(x))
+}
+
+/// `a b + c`, rounded once (but for a rare tie): where a position is scaled up afterwards, the last bit
+/// shows, and Cycles' compiled code fuses the two.
+pub fn fused(a: f32, b: f32, c: f32) -> f32 {
+    (f64::from(a) * f64::from(b) + f64::from(c)) as f32
+}
+
+/// A scaled position moved a little, so that whole coordinates are off the edges of cells: rounding
+/// would make noise of them.
+pub fn off_edges(p: Vec3, scale: f32) -> Vec3 {
+    Vec3::from(p.to_array().map(|x| fused(x, scale, 0.000_001))) * 0.999_999
 }
 
 /// `a` at `t` = 0, `b` at 1.

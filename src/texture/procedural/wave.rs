@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use crate::math::Vec3;
 
 use super::fractal::Octaves;
-use super::round::floor;
+use super::round::{floor, fused, off_edges};
 
 /// Where a wave runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,23 +68,22 @@ pub struct WaveSockets {
 impl Wave {
     /// The wave at a position, 0 to 1.
     pub fn factor(&self, p: Vec3, sockets: &WaveSockets) -> f32 {
-        // As for the checker: whole coordinates are moved off the saw's steps.
-        let p = (p * sockets.scale + 0.000_001) * 0.999_999;
-        let distance = match self.direction {
-            WaveDirection::BandsX => p.x * 20.0,
-            WaveDirection::BandsY => p.y * 20.0,
-            WaveDirection::BandsZ => p.z * 20.0,
-            WaveDirection::BandsDiagonal => (p.x + p.y + p.z) * 10.0,
-            WaveDirection::RingsX => Vec3::new(0.0, p.y, p.z).length() * 20.0,
-            WaveDirection::RingsY => Vec3::new(p.x, 0.0, p.z).length() * 20.0,
-            WaveDirection::RingsZ => Vec3::new(p.x, p.y, 0.0).length() * 20.0,
-            WaveDirection::RingsSpherical => p.length() * 20.0,
+        let p = off_edges(p, sockets.scale);
+        let (distance, frequency) = match self.direction {
+            WaveDirection::BandsX => (p.x, 20.0),
+            WaveDirection::BandsY => (p.y, 20.0),
+            WaveDirection::BandsZ => (p.z, 20.0),
+            WaveDirection::BandsDiagonal => (p.x + p.y + p.z, 10.0),
+            WaveDirection::RingsX => (Vec3::new(0.0, p.y, p.z).length(), 20.0),
+            WaveDirection::RingsY => (Vec3::new(p.x, 0.0, p.z).length(), 20.0),
+            WaveDirection::RingsZ => (Vec3::new(p.x, p.y, 0.0).length(), 20.0),
+            WaveDirection::RingsSpherical => (p.length(), 20.0),
         };
-        let mut angle = distance + sockets.phase;
+        let mut angle = fused(distance, frequency, sockets.phase);
         if sockets.distortion != 0.0 {
             let octaves = Octaves::new(sockets.detail, sockets.detail_roughness, 2.0);
             let noise = octaves.fbm((p * sockets.detail_scale).to_array(), true);
-            angle += sockets.distortion * (noise * 2.0 - 1.0);
+            angle = fused(sockets.distortion, noise * 2.0 - 1.0, angle);
         }
         match self.profile {
             WaveProfile::Sine => 0.5 + 0.5 * (angle - FRAC_PI_2).sin(),
