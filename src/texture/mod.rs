@@ -1,7 +1,9 @@
-//! Images looked up along rays: mip pyramids in the stored size, filtered by the ray's footprint.
+//! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint) and
+//! textures computed from a position ([`procedural`]).
 
 mod image;
 mod lookup;
+pub mod procedural;
 mod pyramid;
 mod srgb;
 mod texel;
