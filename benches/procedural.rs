@@ -20,8 +20,7 @@ fn main() {
         state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
         (state >> 8) as f32 / 1_048_576.0 - 8.0
     };
-    let places: Vec<(Vec3, f32)> =
-        (0..COUNT).map(|_| (Vec3::new(random(), random(), random()), random())).collect();
+    let places: Vec<(Vec3, f32)> = (0..COUNT).map(|_| (Vec3::new(random(), random(), random()), random())).collect();
     let time = |name: &str, evaluate: &dyn Fn(Vec3, f32) -> f32| {
         let mut least = f64::MAX;
         for _ in 0..ROUNDS {
@@ -122,13 +121,8 @@ fn others(time: &dyn Fn(&str, &dyn Fn(Vec3, f32) -> f32)) {
     time("magic, depth 2", &|p, _| Magic { depth: 2 }.factor(p, 5.0, 1.0));
     time("white noise, value", &|p, w| WhiteNoise { dimensions: Dimensions::Three }.value(p, w));
     time("white noise, colour", &|p, w| WhiteNoise { dimensions: Dimensions::Three }.color(p, w)[2]);
-    let sockets = GaborSockets {
-        scale: 5.0,
-        frequency: 2.0,
-        anisotropy: 1.0,
-        orientation_2d: 0.785,
-        orientation_3d: Vec3::ONE,
-    };
+    let sockets =
+        GaborSockets { scale: 5.0, frequency: 2.0, anisotropy: 1.0, orientation_2d: 0.785, orientation_3d: Vec3::ONE };
     time("gabor Two", &|p, _| Gabor::Two.value(p, &sockets).value);
     time("gabor Three", &|p, _| Gabor::Three.value(p, &sockets).value);
 }

@@ -1,6 +1,7 @@
-//! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint) and
-//! textures computed from a position ([`procedural`]).
+//! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint),
+//! textures computed from a position ([`procedural`]), and graphs of both ([`graph`]).
 
+pub mod graph;
 mod image;
 mod lookup;
 pub mod procedural;

@@ -104,7 +104,8 @@ mod tests {
         let (set, TextureTransform(rows)) = swapped.placement().unwrap();
         assert_eq!((set, rows), (3, [[0.0, 3.0, -2.0], [3.0, 0.0, -1.0]]));
         // Turned a quarter about z: u to v.
-        let args = [uv, Affine::constant([5.0, 0.0, 0.0, 0.0]), Affine::constant([0.0, 0.0, 0.5 * std::f64::consts::PI, 0.0])];
+        let args =
+            [uv, Affine::constant([5.0, 0.0, 0.0, 0.0]), Affine::constant([0.0, 0.0, 0.5 * std::f64::consts::PI, 0.0])];
         let args = [args[0], args[1], args[2], Affine::constant([2.0; 4])];
         let mapped = Affine::apply(&Function::Mapping(Mapping::Point), &args).unwrap();
         let (_, TextureTransform([u, v])) = mapped.placement().unwrap();

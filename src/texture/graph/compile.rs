@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::allocate;
 use super::hit::{Beside, HERE, varies};
-use super::program::{Action, MOST_ARGS, Program};
+use super::program::{Action, MOST_ARGS, NEAR, Program};
 use super::steps::{Arg, Steps};
 use crate::desc::graph::{Bump, Graph, Leaf, Op, Value, ValueId};
 use crate::texture::TextureRef;
@@ -142,7 +142,7 @@ impl<'a, R: Resolve> Compiler<'a, R> {
             let texture = TextureRef { texture, uv_set, transform: transform.into() };
             return self.steps.step(Action::Texture(texture, at), Vec::new());
         }
-        let [here, x, y] = self.around(uv, 1.0, depth);
+        let [here, x, y] = self.around(uv, NEAR, depth);
         self.steps.step(Action::Image(texture), vec![looked_up, here, x, y])
     }
 

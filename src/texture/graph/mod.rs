@@ -10,9 +10,9 @@
 //! registers from the stack and allocates nothing.
 //!
 //! **Filtering.** Image lookups whose coordinates are an affine map of one UV set become the very lookups of
-//! plain textures ([`TextureRef`](super::TextureRef)). Others are averaged over the differences of their
-//! coordinates between the hit and two points one footprint beside it, on the plane of the triangle; whole
-//! numbers are taken off these, for images repeat. Bumps evaluate their height at two such points.
+//! plain textures ([`TextureRef`](super::TextureRef)). Others are averaged over as much as
+//! their coordinates change along the ray's footprint, which two more evaluations tell that are a 64th of it
+//! beside the hit, on the plane of the triangle. Bumps evaluate their height twice more, a footprint away.
 
 mod affine;
 mod allocate;

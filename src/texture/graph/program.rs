@@ -9,6 +9,10 @@ use crate::texture::{Texture, TextureRef};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Operand(pub(super) u16);
 
+/// How far beside the hit the speed of texture coordinates is taken, in widths of the footprint: so near that
+/// coordinates hardly ever jump in between, as those around a sphere do at its seam.
+pub(super) const NEAR: f32 = 1.0 / 64.0;
+
 /// Marks a constant.
 const CONSTANT: u16 = 1 << 15;
 
@@ -34,8 +38,7 @@ pub(super) enum Action {
     Attribute(u16, Value, Beside),
     /// An image by a UV set.
     Texture(TextureRef, Beside),
-    /// Texture of the scene by any coordinates: those to look up, and those at the hit and at the two points
-    /// beside it, whose differences are the footprint.
+    /// Texture of the scene by any coordinates: those to look up, and those at the hit and [`NEAR`] it.
     Image(u32),
     /// A function.
     Apply(Function),
@@ -150,12 +153,7 @@ impl Program {
         if at & CONSTANT == 0 { registers[usize::from(at)] } else { self.constants[usize::from(at & !CONSTANT)] }
     }
 
-    fn gather<'v>(
-        &self,
-        registers: &[Value],
-        args: &[Operand],
-        values: &'v mut [Value; MOST_ARGS],
-    ) -> &'v [Value] {
+    fn gather<'v>(&self, registers: &[Value], args: &[Operand], values: &'v mut [Value; MOST_ARGS]) -> &'v [Value] {
         for (value, arg) in values.iter_mut().zip(args) {
             *value = self.get(registers, *arg);
         }
@@ -163,13 +161,10 @@ impl Program {
     }
 }
 
-/// An image at `uv`, averaged over the larger difference between the coordinates here and beside.
+/// An image at `uv`, averaged over how far coordinates move along the footprint, by the faster one of its two
+/// directions.
 fn look_up(texture: &Texture, [uv, here, x, y]: [Value; 4]) -> Value {
-    let width = |to: Value| {
-        // Where coordinates jump by a whole image they mean the same place.
-        let [du, dv] = [to[0] - here[0], to[1] - here[1]].map(|d| d - d.round());
-        du.hypot(dv)
-    };
+    let width = |to: Value| (to[0] - here[0]).hypot(to[1] - here[1]) / f64::from(NEAR);
     texture.lookup([uv[0] as f32, uv[1] as f32], width(x).max(width(y)) as f32).map(f64::from)
 }
 

@@ -113,7 +113,7 @@ impl Steps {
         match (function, args) {
             (Function::Math(Math::Add), &[a, b]) if is(b, 0.0) => Some(a),
             (Function::Math(Math::Add), &[a, b]) if is(a, 0.0) => Some(b),
-            (Function::Math(Math::Subtract | Math::SmoothMinimum), &[a, b]) if is(b, 0.0) => Some(a),
+            (Function::Math(Math::Subtract), &[a, b]) if is(b, 0.0) => Some(a),
             (Function::Math(Math::Multiply), &[a, b]) if is(b, 1.0) || is(a, 0.0) => Some(a),
             (Function::Math(Math::Multiply), &[a, b]) if is(a, 1.0) || is(b, 0.0) => Some(b),
             (Function::Math(Math::Divide), &[a, b]) if is(b, 1.0) => Some(a),
