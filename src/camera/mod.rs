@@ -76,6 +76,14 @@ impl Camera {
         }
     }
 
+    /// Where `p` stands in the picture: 0 to 1 from the left and from below.
+    pub fn window(&self, p: Vec3) -> [f32; 2] {
+        match self {
+            Self::Perspective(camera) => camera.window(p),
+            Self::Orthographic(camera) => camera.window(p),
+        }
+    }
+
     /// Where it stands.
     pub fn view(&self) -> &View {
         match self {

@@ -1,8 +1,9 @@
 //! A point where a ray meets a surface.
 
-use super::{RayCone, Scene};
+use super::{Instance, PathState, RayCone, Scene};
 use crate::bvh::Hit;
-use crate::math::{Frame, Ray, Vec3, sqr};
+use crate::math::{DVec3, Frame, Ray, Vec3, sqr};
+use crate::shape::Mesh;
 
 /// Geometry of a hit in render space. Materials are evaluated from it, as far as they are needed.
 #[derive(Clone, Copy, Debug)]
@@ -31,45 +32,64 @@ pub struct Interaction {
     pub footprint: f32,
     /// Twice the triangle's area in render space.
     pub double_area: f32,
+    /// The path that the ray is part of, where [`super::Effects::light_path`] asks for it.
+    pub path: PathState,
 }
 
 impl Scene {
     /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
     pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
         let instance = &self.instances[hit.instance as usize];
-        let mesh = self.mesh(instance);
-        let barycentrics = [hit.u, hit.v];
-        let local = mesh.point(hit.triangle, barycentrics);
+        let it = Interaction::on(self.mesh(instance), instance, hit.triangle, [hit.u, hit.v], -ray.d);
+        let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
+        Interaction { instance: hit.instance, footprint, ..it }
+    }
+}
+
+impl Interaction {
+    /// A point of `triangle`, seen from `wo` by a ray without width. The index of its instance, here 0, is
+    /// the caller's.
+    #[inline(always)]
+    pub(super) fn on(mesh: &Mesh, instance: &Instance, triangle: u32, barycentrics: [f32; 2], wo: Vec3) -> Self {
+        let local = mesh.point(triangle, barycentrics);
         let (p, p_err) = instance.point(local.p, local.p_err);
         // In f64, where the squares of neither huge nor tiny triangles leave the range.
         let [e1, e2] = local.edges.map(|e| instance.object_to_render.transform_vector3(e).as_dvec3());
         let cross = e1.cross(e2);
         let double_area = cross.length();
-        let wo = -ray.d;
         let wound = if instance.mirrored { -cross } else { cross };
         let ng = if double_area > 0.0 { (wound / double_area).as_vec3() } else { wo };
         let double_area = double_area as f32;
-        let ns = mesh.normal(hit.triangle, barycentrics).map_or(ng, |n| {
+        let ns = mesh.normal(triangle, barycentrics).map_or(ng, |n| {
             let n = Vec3::from(instance.normal_to_render * crate::math::Vec3A::from(n)).normalize_or(ng);
             // Authored normals that point inward would turn the surface inside out.
             if n.dot(ng) < 0.0 { -n } else { n }
         });
-        let cos = wo.dot(ng);
-        Interaction {
+        Self {
             p,
             p_err,
             ng,
             ns,
             wo,
-            front: cos >= 0.0,
-            instance: hit.instance,
-            triangle: hit.triangle,
-            material: instance.material(mesh.slot(hit.triangle)),
+            front: wo.dot(ng) >= 0.0,
+            instance: 0,
+            triangle,
+            material: instance.material(mesh.slot(triangle)),
             barycentrics,
-            footprint: cone.at(hit.t) / cos.abs().max(0.05),
+            footprint: 0.0,
             double_area,
+            path: PathState::CAMERA,
         }
     }
+
+    /// Width of the footprint in units of UV set `set`.
+    pub(super) fn uv_footprint(&self, mesh: &Mesh, set: u32) -> f32 {
+        let uv_area = mesh.uv_area(set, self.triangle);
+        if self.double_area > 0.0 { self.footprint * (uv_area / self.double_area).sqrt() } else { 0.0 }
+    }
+}
+
+impl Scene {
 
     /// The shading frame on the side of `wo`, normal map applied, x along the tangent where there
     /// is one.
@@ -89,6 +109,10 @@ impl Scene {
         }
         if !it.front {
             n = -n;
+        }
+        if let Some(program) = material.programs.as_ref().and_then(|programs| programs.normal.as_ref()) {
+            let [x, y, z, _] = self.spot(it).run(program)[0];
+            n = DVec3::new(x, y, z).as_vec3().normalize_or(n);
         }
         let n = facing(n, if it.front { it.ng } else { -it.ng }, it.wo);
         match tangent {
