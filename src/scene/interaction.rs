@@ -90,7 +90,6 @@ impl Interaction {
 }
 
 impl Scene {
-
     /// The shading frame on the side of `wo`, normal map applied, x along the tangent where there
     /// is one.
     pub fn shading_frame(&self, it: &Interaction) -> Frame {

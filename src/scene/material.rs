@@ -54,6 +54,13 @@ pub struct Programs {
     pub occlusion: Option<Program>,
 }
 
+impl Programs {
+    /// True where there is one at all.
+    pub fn any(&self) -> bool {
+        [&self.opacity, &self.emission, &self.surface, &self.normal, &self.occlusion].iter().any(|p| p.is_some())
+    }
+}
+
 /// A tangent-space normal map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalInput {
@@ -254,7 +261,8 @@ impl Scene {
         let material = self.material(it);
         let mut lookups = self.lookups(it, |programs| programs.emission.as_ref());
         if !material.unlit {
-            return lookups.color(&material.emission).map(|c| c.max(0.0));
+            let le = lookups.color(&material.emission);
+            return if material.programs.is_some() { le.map(|c| c.max(0.0)) } else { le };
         }
         let color = lookups.color(&material.base_color);
         self.vertex_color(it).map_or(color, |[r, g, b, _]| color * Rgb::new(r, g, b))

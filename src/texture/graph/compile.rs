@@ -37,15 +37,6 @@ pub trait Resolve {
     fn material_index(&self) -> u32;
 }
 
-/// What a few values of a graph compile to.
-#[derive(Clone, Debug)]
-pub enum Compiled {
-    /// All of them are the same everywhere.
-    Constants(Vec<Value>),
-    /// To be run at each hit.
-    Program(Program),
-}
-
 /// Compiles values of one material's graph.
 pub struct Compiler<'a, R> {
     graph: &'a Graph,
@@ -67,13 +58,9 @@ impl<'a, R: Resolve> Compiler<'a, R> {
     }
 
     /// A program for `values`; what they share is computed once.
-    pub fn compile(&mut self, values: &[ValueId]) -> Compiled {
+    pub fn program(&mut self, values: &[ValueId]) -> Program {
         let outputs: Vec<Arg> = values.iter().map(|id| self.lower(*id, HERE, 0)).collect();
-        let constants: Option<Vec<Value>> = outputs.iter().map(|arg| self.steps.value(*arg)).collect();
-        match constants {
-            Some(constants) => Compiled::Constants(constants),
-            None => Compiled::Program(allocate::program(&self.steps, &outputs)),
-        }
+        allocate::program(&self.steps, &outputs)
     }
 
     /// The step that makes `root` at a point, and all those before it.

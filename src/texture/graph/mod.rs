@@ -25,6 +25,6 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{Compiled, Compiler, Resolve, Resolved};
+pub use compile::{Compiler, Resolve, Resolved};
 pub use hit::{Beside, HERE, Hit};
 pub use program::{Asks, Program};

@@ -162,14 +162,9 @@ fn naive(graph: &Graph, id: ValueId, hit: &Plain, at: Beside) -> Value {
 }
 
 fn run(graph: &Graph, ids: &[ValueId], hit: &Plain) -> Vec<Value> {
-    match Compiler::new(graph, &mut Names).compile(ids) {
-        Compiled::Constants(values) => values,
-        Compiled::Program(program) => {
-            let mut out = vec![[0.0; 4]; ids.len()];
-            program.run(hit, &hit.textures, &mut out);
-            out
-        }
-    }
+    let mut out = vec![[0.0; 4]; ids.len()];
+    Compiler::new(graph, &mut Names).program(ids).run(hit, &hit.textures, &mut out);
+    out
 }
 
 const MATHS: [Math; 14] = [
@@ -340,7 +335,7 @@ fn images_by_a_uv_set_are_plain_lookups_to_the_bit() {
     let images = [by_matrix, by_maths, put_together].map(|uv| graph.image(0, uv));
     let values = run(&graph, &images, &hit);
     assert_eq!(values, vec![expected; 3]);
-    let Compiled::Program(program) = Compiler::new(&graph, &mut Names).compile(&images) else { panic!() };
+    let program = Compiler::new(&graph, &mut Names).program(&images);
     assert_eq!(program.len(), 1, "three times the same lookup, and nothing else");
 }
 
@@ -375,10 +370,7 @@ fn what_is_not_needed_is_not_there() {
     let used = graph.math(Math::Sine, &[uv]);
     let unused = graph.math(Math::Cosine, &[uv]);
     graph.math(Math::Tangent, &[unused]);
-    let length = |graph: &Graph, ids: &[ValueId]| match Compiler::new(graph, &mut Names).compile(ids) {
-        Compiled::Constants(_) => 0,
-        Compiled::Program(program) => program.len(),
-    };
+    let length = |graph: &Graph, ids: &[ValueId]| Compiler::new(graph, &mut Names).program(ids).len();
     assert_eq!(length(&graph, &[used]), 2);
     assert_eq!(length(&graph, &[used, unused]), 3);
     // Twice the same, found after other operations.
@@ -403,10 +395,7 @@ fn programs_say_what_they_go_by() {
     let back = graph.leaf(Leaf::Backfacing);
     let seen = graph.add(uv, back);
     let path = graph.multiply(uv, camera);
-    let asks = |ids: &[ValueId]| {
-        let Compiled::Program(program) = Compiler::new(&graph, &mut Names).compile(ids) else { panic!() };
-        program.asks()
-    };
+    let asks = |ids: &[ValueId]| Compiler::new(&graph, &mut Names).program(ids).asks();
     assert_eq!(asks(&[uv]), Asks::default());
     assert_eq!(asks(&[seen]), Asks { view: true, path: false });
     assert_eq!(asks(&[path]), Asks { view: true, path: true });
@@ -437,7 +426,7 @@ fn huge_graphs_are_compiled_and_run() {
         sum = graph.add(sum, *term);
         expected += (0.25 + i as f64).sin();
     }
-    let Compiled::Program(program) = Compiler::new(&graph, &mut Names).compile(&[sum]) else { panic!() };
+    let program = Compiler::new(&graph, &mut Names).program(&[sum]);
     assert!(program.registers > 256, "{}", program.registers);
     assert!((run(&graph, &[sum], &plain(0.1))[0][0] - expected).abs() < 1e-9);
 

@@ -203,9 +203,7 @@ fn a_graph_of_images_is_handed_over_as_it_is() {
     let (texture, image) = read.texture(lookup(0).0);
     assert_eq!((texture.wrap_u, texture.wrap_v, &*image.name), (Wrap::Clamp, Wrap::Repeat, "a.png"));
     // b is 1 at the first texel (white) and 0.2 at the second: a + 0.2 (1 − a).
-    for (a, b, expected) in
-        [([0.0, 0.2, 0.4], 1.0, [1.0; 3]), ([1.0, 0.8, 0.6], 0.2, [1.0, 0.84, 0.68])]
-    {
+    for (a, b, expected) in [([0.0, 0.2, 0.4], 1.0, [1.0; 3]), ([1.0, 0.8, 0.6], 0.2, [1.0, 0.84, 0.68])] {
         let texels = [(lookup(0).0, [a[0], a[1], a[2], 1.0]), (lookup(1).0, [b, 0.0, 0.0, 1.0])];
         same(&value_of(m, m.base_color.graph.unwrap(), &texels)[..3], &expected);
     }

@@ -89,9 +89,7 @@ fn value_of(m: &MaterialDesc, id: ValueId, texels: &[(u32, [f64; 4])]) -> [f64; 
             Op::Constant(value) => *value,
             Op::Leaf(_) => [0.5; 4],
             Op::Image { texture, .. } => texels.iter().find(|(of, _)| of == texture).unwrap().1,
-            Op::Apply(function, args) => {
-                function.eval(&args.iter().map(|arg| values[arg.index()]).collect::<Vec<_>>())
-            }
+            Op::Apply(function, args) => function.eval(&args.iter().map(|arg| values[arg.index()]).collect::<Vec<_>>()),
             other => panic!("{other:?}"),
         });
     }
