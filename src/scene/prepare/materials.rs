@@ -283,7 +283,10 @@ impl Builder<'_> {
         let surface = self.program(inputs);
         // What passes:
         let alpha = self.scalar(inputs, &desc.alpha);
-        let opacity = self.program(inputs);
+        let opaque = effects::is_opaque(self.desc, desc)
+            || (alpha.varying == Varying::No
+                && effects::is_opaque_at(self.desc, desc.alpha_mode, f64::from(alpha.factor)));
+        let opacity = self.program(inputs).filter(|_| !opaque);
         // What is emitted; of an unlit surface its color:
         let emission = self.color(inputs, &emission);
         if desc.unlit {
@@ -300,9 +303,6 @@ impl Builder<'_> {
             .filter(|o| o.texture.is_some() || o.graph.is_some())
             .map(|o| self.scalar(inputs, &o));
         let programs = Programs { opacity, emission: light, surface, normal, occlusion: self.program(inputs) };
-        let opaque = effects::is_opaque(self.desc, desc)
-            || (alpha.varying == Varying::No
-                && effects::is_opaque_at(self.desc, desc.alpha_mode, f64::from(alpha.factor)));
         Material {
             base_color,
             alpha,

@@ -1,10 +1,9 @@
 //! Steps to a program: what is needed, in order, each result in a register that is free by then.
 
-use super::program::{MOST, Operand, Program, Step};
+use super::program::{Operand, Program, Step};
 use super::steps::{Arg, Steps};
 
-/// The program that makes `outputs`. More constants or registers than [`MOST`] can't be addressed: what
-/// comes beyond is 0, which takes a graph of tens of thousands of operations.
+/// The program that makes `outputs`.
 pub(super) fn program(steps: &Steps, outputs: &[Arg]) -> Program {
     let count = steps.nodes.len();
     // The last step that uses each result; those of outputs are used to the end.
@@ -70,20 +69,18 @@ struct Maker {
     constants: Vec<[f64; 4]>,
     /// Where constants of the graph have gone.
     constant_of: std::collections::HashMap<u32, usize>,
-    registers: u16,
-    free: Vec<u16>,
+    registers: u32,
+    free: Vec<u32>,
 }
 
 impl Maker {
-    fn operand(&mut self, steps: &Steps, arg: Arg, register_of: &[u16]) -> Operand {
+    fn operand(&mut self, steps: &Steps, arg: Arg, register_of: &[u32]) -> Operand {
         match arg {
             Arg::Step(i) => Operand::register(register_of[i as usize]),
             Arg::Constant(i) => {
                 let constants = &mut self.constants;
                 let at = *self.constant_of.entry(i).or_insert_with(|| {
-                    if constants.len() < MOST {
-                        constants.push(steps.constants[i as usize]);
-                    }
+                    constants.push(steps.constants[i as usize]);
                     constants.len() - 1
                 });
                 Operand::constant(at)
@@ -91,11 +88,10 @@ impl Maker {
         }
     }
 
-    fn register(&mut self) -> u16 {
+    fn register(&mut self) -> u32 {
         self.free.pop().unwrap_or_else(|| {
-            let new = self.registers.min(MOST as u16 - 1);
-            self.registers = new + 1;
-            new
+            self.registers += 1;
+            self.registers - 1
         })
     }
 }

@@ -7,24 +7,21 @@ use crate::texture::{Texture, TextureRef};
 
 /// Where a step finds an argument: a constant, or the register of a step before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Operand(pub(super) u16);
+pub(super) struct Operand(u32);
 
 /// How far beside the hit the speed of texture coordinates is taken, in widths of the footprint: so near that
 /// coordinates hardly ever jump in between, as those around a sphere do at its seam.
 pub(super) const NEAR: f32 = 1.0 / 64.0;
 
 /// Marks a constant.
-const CONSTANT: u16 = 1 << 15;
-
-/// So many constants or registers a program can have.
-pub(super) const MOST: usize = CONSTANT as usize;
+const CONSTANT: u32 = 1 << 31;
 
 impl Operand {
     pub fn constant(index: usize) -> Self {
-        Self(index as u16 | CONSTANT)
+        Self(index as u32 | CONSTANT)
     }
 
-    pub fn register(index: u16) -> Self {
+    pub fn register(index: u32) -> Self {
         Self(index)
     }
 }
@@ -59,7 +56,7 @@ pub(super) struct Step {
     /// The first of its arguments in [`Program::args`].
     pub first: u32,
     pub count: u8,
-    pub out: u16,
+    pub out: u32,
 }
 
 /// What a program goes by beyond the place itself.
@@ -78,7 +75,7 @@ pub struct Program {
     pub(super) args: Box<[Operand]>,
     pub(super) constants: Box<[Value]>,
     pub(super) outputs: Box<[Operand]>,
-    pub(super) registers: u16,
+    pub(super) registers: u32,
     pub(super) asks: Asks,
 }
 
@@ -109,7 +106,7 @@ impl Program {
             0..=16 => self.run_in(hit, textures, &mut [[0.0; 4]; 16], out),
             17..=64 => self.run_in(hit, textures, &mut [[0.0; 4]; 64], out),
             65..=256 => self.run_in(hit, textures, &mut [[0.0; 4]; 256], out),
-            many => self.run_in(hit, textures, &mut vec![[0.0; 4]; usize::from(many)], out),
+            many => self.run_in(hit, textures, &mut vec![[0.0; 4]; many as usize], out),
         }
     }
 
@@ -141,7 +138,7 @@ impl Program {
                     finite(bump(hit, heights, arg(3)[0], arg(4)[0], arg(5), *filter_width, *object_space))
                 }
             };
-            registers[usize::from(step.out)] = value;
+            registers[step.out as usize] = value;
         }
         for (out, operand) in out.iter_mut().zip(&self.outputs) {
             *out = self.get(registers, *operand);
@@ -150,7 +147,7 @@ impl Program {
 
     #[inline(always)]
     fn get(&self, registers: &[Value], Operand(at): Operand) -> Value {
-        if at & CONSTANT == 0 { registers[usize::from(at)] } else { self.constants[usize::from(at & !CONSTANT)] }
+        if at & CONSTANT == 0 { registers[at as usize] } else { self.constants[(at & !CONSTANT) as usize] }
     }
 
     fn gather<'v>(&self, registers: &[Value], args: &[Operand], values: &'v mut [Value; MOST_ARGS]) -> &'v [Value] {

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::super::images::tests::stage;
 use super::*;
+use crate::desc::graph::ValueId;
 use crate::import::ImportOptions;
 
 /// A material, the tables that it points into, and what was told.
