@@ -259,9 +259,7 @@ impl Tree {
                     let blas = &*placed.blas;
                     match blas.items() {
                         Items::Triangles(blocks) => blas.any::<S>(blocks, local, t_max),
-                        Items::Rounds(rounds) => {
-                            (round.any)(blas, rounds, local, placed.origin_error(&setup.o), t_max)
-                        }
+                        Items::Rounds(rounds) => (round.any)(blas, rounds, local, placed.origin_error(&setup.o), t_max),
                     }
                 };
                 if *found {

@@ -208,7 +208,7 @@ impl Emitter for MeshLight {
         };
         let [_, b1, b2] = barycentrics.map(|b| b as f32);
         let pdf = (density * f64::from(chosen.pmf)) as f32;
-        let li = self.emitters.emission.radiance(index, [b1, b2]);
+        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }

@@ -1,9 +1,9 @@
 //! A point where a ray meets a surface.
 
-use super::{RayCone, Scene};
+use super::{Instance, PathState, RayCone, Scene};
 use crate::bvh::Hit;
-use crate::math::{Frame, Ray, Vec3, sqr};
-use crate::shape::SurfaceGeometry;
+use crate::math::{DVec3, Frame, Ray, Vec3, sqr};
+use crate::shape::{Shape, SurfaceGeometry};
 
 /// Geometry of a hit in render space. Materials are evaluated from it, as far as they are needed.
 #[derive(Clone, Copy, Debug)]
@@ -32,39 +32,57 @@ pub struct Interaction {
     pub footprint: f32,
     /// The primitive's size in render space; see [`crate::shape::SurfaceGeometry::size`].
     pub size: f32,
+    /// The path that the ray is part of, where [`super::Effects::light_path`] asks for it.
+    pub path: PathState,
 }
 
 impl Scene {
     /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
     pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
         let instance = &self.instances[hit.instance as usize];
-        let shape = self.shape(instance);
-        let at = [hit.u, hit.v];
-        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(hit.primitive, at, instance.placement());
-        let wo = -ray.d;
+        let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d);
+        let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
+        Interaction { instance: hit.instance, footprint, ..it }
+    }
+}
+
+impl Interaction {
+    /// A point of `primitive`, seen from `wo` by a ray without width. The index of its instance, here 0, is
+    /// the caller's.
+    #[inline(always)]
+    pub(super) fn on(shape: &Shape, instance: &Instance, primitive: u32, at: [f32; 2], wo: Vec3) -> Self {
+        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, instance.placement());
         let ng = ng.unwrap_or(wo);
         let ns = ns.map_or(ng, |n| {
             let n = n.normalize_or(ng);
             // Authored normals that point inward would turn the surface inside out.
             if n.dot(ng) < 0.0 { -n } else { n }
         });
-        let cos = wo.dot(ng);
-        Interaction {
+        Self {
             p,
             p_err,
             ng,
             ns,
             wo,
-            front: cos >= 0.0,
-            instance: hit.instance,
-            primitive: hit.primitive,
-            material: instance.material(shape.slot(hit.primitive)),
+            front: wo.dot(ng) >= 0.0,
+            instance: 0,
+            primitive,
+            material: instance.material(shape.slot(primitive)),
             at,
-            footprint: cone.at(hit.t) / cos.abs().max(0.05),
+            footprint: 0.0,
             size,
+            path: PathState::CAMERA,
         }
     }
 
+    /// Width of the footprint in units of UV set `set`.
+    pub(super) fn uv_footprint(&self, shape: &Shape, set: u32) -> f32 {
+        let uv_size = shape.uv_size(set, self.primitive);
+        if self.size > 0.0 { self.footprint * (uv_size / self.size).sqrt() } else { 0.0 }
+    }
+}
+
+impl Scene {
     /// The shading frame on the side of `wo`, normal map applied, x along the tangent where there
     /// is one.
     pub fn shading_frame(&self, it: &Interaction) -> Frame {
@@ -83,6 +101,10 @@ impl Scene {
         }
         if !it.front {
             n = -n;
+        }
+        if let Some(program) = material.programs.as_ref().and_then(|programs| programs.normal.as_ref()) {
+            let [x, y, z, _] = self.spot(it).run(program)[0];
+            n = DVec3::new(x, y, z).as_vec3().normalize_or(n);
         }
         let n = facing(n, if it.front { it.ng } else { -it.ng }, it.wo);
         match tangent {

@@ -1,13 +1,16 @@
 //! The scene as it is traced: `f32`, immutable during a render, in *render space*, whose origin lies
 //! near the camera.
 
+mod asked;
 mod effects;
 mod framing;
 mod ids;
 mod instance;
 mod interaction;
 mod material;
+mod path_state;
 mod prepare;
+mod spot;
 mod trace;
 
 pub use effects::Effects;
@@ -15,10 +18,13 @@ pub use ids::Ids;
 pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::Material;
+pub use path_state::{PathState, RayKind};
 pub use prepare::{Prepared, View, prepare};
 pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
+
+use asked::Asked;
 
 use crate::bvh::Bvh;
 use crate::camera::Camera;
@@ -55,6 +61,7 @@ pub struct Scene {
     instances: Vec<Instance>,
     materials: Vec<Material>,
     textures: Arc<Vec<Texture>>,
+    asked: Arc<Asked>,
 }
 
 impl Scene {

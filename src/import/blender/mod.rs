@@ -19,8 +19,8 @@ mod transform;
 mod world;
 
 pub use document::{
-    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, PanoramaData,
-    RenderData, VisibilityData, WorldData,
+    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, PanoramaData, RenderData,
+    VisibilityData, WorldData,
 };
 pub use image::ImageSource;
 pub use mesh::{LayerArray, MeshArrays};

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use super::document::Document;
 use super::image::{ImageSource, Images};
+use super::layers::UvSets;
+use super::light::LampShader;
 use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
 use super::transform::affine_of_floats;
-use super::layers::UvSets;
-use super::light::LampShader;
 use super::{camera, light, material, nodes, random, world};
 use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
@@ -41,8 +41,9 @@ impl BlenderScene {
     /// # Errors
     /// JSON that is no [`Document`].
     pub fn set_document(&mut self, json: &str) -> Result<()> {
-        self.document = serde_json::from_str(json)
-            .map_err(|error| Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}")))?;
+        self.document = serde_json::from_str(json).map_err(|error| {
+            Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}"))
+        })?;
         Ok(())
     }
 
@@ -90,8 +91,7 @@ impl BlenderScene {
             return Err(Error::invalid(&self.place(), what));
         }
         let placements = objects.iter().zip(matrices).zip(random);
-        self.instances =
-            placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
+        self.instances = placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
         Ok(())
     }
 
@@ -114,7 +114,7 @@ impl BlenderScene {
             desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
             desc.render.camera = Some(data.name.as_str().into());
         }
-        let mut images = Images::new(&document.images, &self.images, &place);
+        let mut images = Images::new(&document.images, &self.images, &place, document.version);
         let names = document.materials.iter().filter_map(|m| m.nodes.as_ref()).flat_map(TreeData::uv_map_names);
         let uv_sets = UvSets::new(names, self.meshes.values());
         let of_object = self.add_instances(&uv_sets, &mut desc, warnings);

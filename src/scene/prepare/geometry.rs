@@ -109,7 +109,8 @@ fn prepare_mesh(desc: &MeshDesc) -> Mesh {
     }
 }
 
-fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::Attribute<U> {
+/// Values of the description as the mesh has them.
+pub fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::Attribute<U> {
     match attribute {
         desc::Attribute::Point(values) => shape::Attribute::Point(values.iter().map(f).collect()),
         desc::Attribute::Corner(values) => shape::Attribute::Corner(values.iter().map(f).collect()),

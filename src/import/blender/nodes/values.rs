@@ -55,6 +55,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeTexChecker", procedural::checker),
     ("ShaderNodeTexGradient", procedural::gradient),
     ("ShaderNodeTexWhiteNoise", procedural::white_noise),
+    ("ShaderNodeTexGabor", procedural::gabor),
     ("ShaderNodeMapping", vector::mapping),
     ("ShaderNodeNormal", vector::normal),
     ("ShaderNodeNormalMap", vector::normal_map),
@@ -70,7 +71,10 @@ pub fn output<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: usize) -> ValueId
     match NODES.iter().find(|(name, _)| *name == at.node.r#type) {
         Some((_, make)) => make(flow, at, &socket.id),
         None => {
-            flow.warn(format!("the node \"{}\" ({}) is not supported; its default stands for it", at.node.name, at.node.r#type));
+            flow.warn(format!(
+                "the node \"{}\" ({}) is not supported; its default stands for it",
+                at.node.name, at.node.r#type
+            ));
             flow.graph.constant(socket.value.places())
         }
     }
