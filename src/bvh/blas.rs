@@ -49,8 +49,7 @@ pub(super) struct Rounds {
 }
 
 impl Blas {
-    const TRIANGLES: LeafRule = LeafRule { block: BLOCK, max: 2 * BLOCK, cost: 1.0 };
-    const ROUNDS: LeafRule = LeafRule { block: BLOCK, max: 2 * BLOCK, cost: 1.0 };
+    const RULE: LeafRule = LeafRule { block: BLOCK, max: 2 * BLOCK, cost: 1.0 };
 
     /// Builds the tree over `triangles`, which index `points`; all indices must be in range.
     ///
@@ -65,7 +64,7 @@ impl Blas {
             .enumerate()
             .filter_map(|(index, t)| Some(Primitive::new(triangle_bounds(corners(points, *t))?, index as u32)))
             .collect();
-        let wide = build::build(&mut primitives, Self::TRIANGLES);
+        let wide = build::build(&mut primitives, Self::RULE);
         let blocks = blocks(&wide.items, &primitives, |range| {
             fill_block(range.iter().map(|p| (p.index, corners(points, triangles[p.index as usize]))))
         });
@@ -88,18 +87,11 @@ impl Blas {
             None => [balls[index]; 2],
         };
         let count = segments.map_or(balls.len(), <[_]>::len);
-        let pieces: Vec<Vec<Primitive>> = (0..count)
+        let mut primitives: Vec<Primitive> = (0..count)
             .into_par_iter()
-            .with_min_len(1024)
-            .fold(Vec::new, |mut list, index| {
-                list.extend(round::boxes(ends(index)).map(|bounds| Primitive::new(bounds, index as u32)));
-                list
-            })
+            .filter_map(|index| Some(Primitive::new(round::bounds(ends(index))?, index as u32)))
             .collect();
-        let mut primitives = pieces.concat();
-        let mut hit = primitives.iter().map(|p| p.index).collect::<Vec<_>>();
-        hit.dedup();
-        let wide = build::build(&mut primitives, Self::ROUNDS);
+        let wide = build::build(&mut primitives, Self::RULE);
         let blocks = blocks(&wide.items, &primitives, |range| {
             RoundBlock::of(range.iter().map(|p| (p.index, ends(p.index as usize))))
         });
@@ -111,7 +103,7 @@ impl Blas {
             },
         );
         let items = Items::Rounds(Rounds { blocks, beyond });
-        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: hit.len() }
+        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: primitives.len() }
     }
 
     /// The box of all that can be hit, in object space; empty if there is nothing.

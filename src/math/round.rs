@@ -281,7 +281,7 @@ mod tests {
             let cap = |r: f64, h: f64| PI * h * h * (r - h / 3.0);
             let frustum = PI / 3.0 * cone.length * cos.powi(4) * (a * a + a * b + b * b);
             let expected = cap(a, a * (1.0 + sin)) + frustum + cap(b, b * (1.0 - sin));
-            assert!((volume / expected - 1.0).abs() < 1e-3, "{cone:?}: {volume} {expected}");
+            assert!((volume / expected - 1.0).abs() < 1e-2, "{cone:?}: {volume} {expected}");
         }
     }
 

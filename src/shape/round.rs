@@ -165,3 +165,73 @@ impl Rounds {
             + self.material_slots.as_deref().map_or(0, size_of_val)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quarter of a circle about the origin, in twelve pieces.
+    fn bow(radius: impl Fn(usize) -> f32) -> Rounds {
+        let ball = |i: usize| {
+            let (sin, cos) = (0.13 * i as f32).sin_cos();
+            [cos, sin, 0.0, radius(i)]
+        };
+        let segments = (0..12).map(|i: u32| [i.saturating_sub(1), i, i + 1, (i + 2).min(12)]).collect();
+        Rounds { balls: (0..=12).map(ball).collect(), segments: Some(segments), ..Rounds::default() }
+    }
+
+    #[test]
+    fn smooth_normals_run_over_the_joints_and_true_ones_do_not() {
+        for taper in [0.0, 0.005] {
+            let rounds = bow(|i| 0.1 - taper * i as f32);
+            let mut steps = [0.0_f32; 2];
+            let mut last: Option<RoundSurface> = None;
+            // Along the outside, by the direction from the circle's centre.
+            for i in 0..1000 {
+                let (sin, cos) = (1.4 * f64::from(i) / 1000.0 + 0.05).sin_cos();
+                let far = DVec3::new(cos, sin, 0.2) * 1.2;
+                let height = |k: u32| {
+                    let (cone, origin) = rounds.cone(k);
+                    cone.foot(far - origin).distance
+                };
+                let segment = (0..12).min_by(|&a, &b| height(a).total_cmp(&height(b))).unwrap();
+                let (cone, origin) = rounds.cone(segment);
+                let at = rounds.point(segment, cone.coordinates(far - origin));
+                if let Some(last) = last.replace(at) {
+                    steps[0] = steps[0].max(at.ng.distance(last.ng));
+                    steps[1] = steps[1].max(at.ns.distance(last.ns));
+                }
+                assert!(at.ng.dot(at.ns) > 0.99 && (at.ns.length() - 1.0).abs() < 1e-5);
+            }
+            // Each step turns by 0.0014.
+            assert!(steps[1] < 0.002, "taper {taper}: {steps:?}");
+            // The true normal turns on the balls alone, by far more at a time.
+            assert!(steps[0] > 3.0 * steps[1], "taper {taper}: {steps:?}");
+        }
+    }
+
+    #[test]
+    fn ends_and_corners_keep_their_true_normals() {
+        let rounds = bow(|_| 0.1);
+        let tip = rounds.point(11, [2.0, 0.0]);
+        assert!(tip.ng == tip.ns && tip.ng.dot(rounds.tangent(11, [1.0, 0.0]).unwrap()) > 0.99, "{tip:?}");
+        let balls = vec![[0.0, 0.0, 0.0, 0.1], [1.0, 0.0, 0.0, 0.1], [1.0, 1.0, 0.0, 0.1]];
+        let corner = Rounds { balls, segments: Some(vec![[0, 0, 1, 2], [0, 1, 2, 2]]), ..Rounds::default() };
+        for (segment, u) in [(0, 0.9), (0, 1.0), (0, 2.5), (1, -2.5), (1, 0.1)] {
+            let at = corner.point(segment, [u, 0.7]);
+            assert!(at.ng.distance(at.ns) < 1e-6, "{segment} {u}: {at:?}");
+        }
+    }
+
+    #[test]
+    fn values_run_along_segments() {
+        let uvs = (0..=12).map(|i| Vec2::new(i as f32, 0.5)).collect();
+        let colors = (0..=12).map(|i| [i as f32, 0.0, 0.0, 1.0]).collect();
+        let rounds = Rounds { uvs: vec![uvs], colors: Some(colors), ..bow(|_| 0.1) };
+        for (u, along) in [(-2.0, 3.0), (0.25, 3.25), (1.0, 4.0), (3.0, 4.0)] {
+            assert_eq!(rounds.uv(0, 3, [u, 0.1]), Some(Vec2::new(along, 0.5)));
+            assert_eq!(rounds.color(3, [u, 0.1]), Some([along, 0.0, 0.0, 1.0]));
+        }
+        assert_eq!((rounds.uv_size(0, 3), rounds.uv(1, 3, [0.5, 0.0])), (1.0, None));
+    }
+}
