@@ -106,7 +106,7 @@ impl Builder<'_> {
             links.add(instances, lights, penumbra);
         }
         links.resolve(&hierarchy.nodes, &mut scene, warnings);
-        scene.meshes = meshes.meshes;
+        scene.meshes = meshes.meshes.into_iter().map(Into::into).collect();
         Ok(scene)
     }
 
