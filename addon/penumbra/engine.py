@@ -7,6 +7,10 @@ import penumbra
 
 from . import passes, properties
 from .export import Exporter, camera
+from .viewport import Viewport
+
+# Viewports by the address of their engine: attributes of an engine are not all kept by Blender.
+VIEWPORTS = {}
 
 
 class PenumbraRenderEngine(bpy.types.RenderEngine):
@@ -66,6 +70,39 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self._tell(picture.warnings)
         self._fill(view_layer, picture, corner)
 
+    def view_update(self, context, depsgraph):
+        """The scene was edited while the viewport shows it."""
+        self._in_viewport(lambda: self._viewport().update(context, depsgraph))
+
+    def view_draw(self, context, depsgraph):
+        """Draws the viewport."""
+        self._in_viewport(lambda: self._viewport().draw(context, depsgraph))
+
+    def _viewport(self):
+        viewport = VIEWPORTS.get(self.as_pointer())
+        if viewport is None:
+            viewport = VIEWPORTS[self.as_pointer()] = Viewport(self)
+        return viewport
+
+    def _in_viewport(self, work):
+        try:
+            work()
+        except Exception as error:  # noqa: BLE001
+            traceback.print_exc()
+            self.update_stats("Penumbra", str(error))
+
+    def __del__(self):
+        """Blender frees the engine: its viewport ends with it."""
+        try:
+            viewport = VIEWPORTS.pop(self.as_pointer(), None)
+        except ReferenceError:
+            viewport = None
+        if viewport is not None:
+            viewport.free()
+        base = getattr(super(), "__del__", None)
+        if base is not None:
+            base()
+
     def _observe(self, progress):
         """Called by the engine, on Blender's thread; a true answer stops the render."""
         if progress is not None:
@@ -108,4 +145,7 @@ def register():
 
 
 def unregister():
+    for viewport in VIEWPORTS.values():
+        viewport.free()
+    VIEWPORTS.clear()
     bpy.utils.unregister_class(PenumbraRenderEngine)

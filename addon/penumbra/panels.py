@@ -28,6 +28,7 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(own, "spp", text="Samples")
         column.prop(own, "time", text="Time Limit")
+        layout.prop(own, "viewport_spp")
         layout.prop(own, "seed")
 
 

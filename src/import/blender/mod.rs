@@ -16,6 +16,7 @@ mod nodes;
 mod random;
 mod scene;
 mod transform;
+mod view;
 mod world;
 
 pub use document::{
@@ -26,3 +27,4 @@ pub use image::ImageSource;
 pub use mesh::{LayerArray, MeshArrays};
 pub use nodes::{NodeData, SocketData, TreeData, Value};
 pub use scene::BlenderScene;
+pub use view::ViewData;
