@@ -52,7 +52,6 @@ class Viewport:
             changed, self.stale, self.view = self.stale, False, view
             try:
                 self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)
-                self.engine.error_set("")
             except Exception as error:
                 self.engine.update_stats("Penumbra", str(error))
                 return
