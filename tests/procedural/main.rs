@@ -1,6 +1,7 @@
 //! Procedural textures against values that Cycles computed: `reference.py` made the tables in
 //! `reference/`, one line an evaluation.
 
+mod extremes;
 mod menus;
 mod table;
 

@@ -112,20 +112,19 @@ pub fn distance_to_edge<const N: usize, const PCG: bool>(cells: &Cells<N, PCG>) 
         return distance_to_edge_1d(cells);
     }
     // All points as seen from the place, and the closest of them.
-    let (mut points, mut count) = ([[0.0; N]; MOST_CELLS], 0);
+    let mut points = [[0.0; N]; MOST_CELLS];
     let (mut least, mut closest) = (f32::MAX, [0.0; N]);
-    for step in steps() {
+    for (seen, step) in points.iter_mut().zip(steps()) {
         let at = cells.point(step);
         let away: [f32; N] = std::array::from_fn(|axis| at[axis] - cells.inside[axis]);
         let rank = dot(away, away);
         if rank < least {
             (least, closest) = (rank, away);
         }
-        points[count] = away;
-        count += 1;
+        *seen = away;
     }
     let mut nearest = f32::MAX;
-    for away in &points[..count] {
+    for away in &points[..3_usize.pow(N as u32)] {
         let across: [f32; N] = std::array::from_fn(|axis| away[axis] - closest[axis]);
         let length_squared = dot(across, across);
         // The point itself has no edge with itself.
