@@ -3,6 +3,7 @@
 use super::cells::{Cells, steps};
 use super::metric::{Metric, dot};
 use super::near::Near;
+use crate::texture::procedural::hash::unit;
 use crate::texture::procedural::round::{mix, smoothstep};
 
 /// The point that an octave found.
@@ -138,7 +139,9 @@ pub fn distance_to_edge<const N: usize, const PCG: bool>(cells: &Cells<N, PCG>) 
 
 /// On a line, the middles between the cell's own point and its two neighbours.
 fn distance_to_edge_1d<const N: usize, const PCG: bool>(cells: &Cells<N, PCG>) -> f32 {
-    let [left, own, right] = [-1, 0, 1].map(|step| cells.point([step; N])[0]);
+    let [left, right] = [-1, 1].map(|step| cells.point([step; N])[0]);
+    // Not by a step of 0, which would turn -0 into 0: their hashes differ, and Cycles takes -0's.
+    let own = unit([cells.corner[0]]) * cells.randomness;
     let to_middle = |other: f32| ((own + other) / 2.0 - cells.inside[0]).abs();
     to_middle(left).min(to_middle(right))
 }
