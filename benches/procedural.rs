@@ -133,13 +133,8 @@ fn others(table: &mut Table) {
     time(table, "magic, depth 2", move |p, _| Magic { depth: 2 }.factor(p, 5.0, 1.0));
     time(table, "white noise, value", move |p, w| WhiteNoise { dimensions: Dimensions::Three }.value(p, w));
     time(table, "white noise, colour", move |p, w| WhiteNoise { dimensions: Dimensions::Three }.color(p, w)[2]);
-    let sockets = GaborSockets {
-        scale: 5.0,
-        frequency: 2.0,
-        anisotropy: 1.0,
-        orientation_2d: 0.785,
-        orientation_3d: Vec3::ONE,
-    };
+    let sockets =
+        GaborSockets { scale: 5.0, frequency: 2.0, anisotropy: 1.0, orientation_2d: 0.785, orientation_3d: Vec3::ONE };
     time(table, "gabor Two", move |p, _| Gabor::Two.value(p, &sockets).value);
     time(table, "gabor Three", move |p, _| Gabor::Three.value(p, &sockets).value);
 }

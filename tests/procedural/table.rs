@@ -75,7 +75,10 @@ pub fn compare(name: &str, tolerance: f32, evaluate: impl Fn(&Line) -> Vec<f32>)
         }
     }
     let of = lines.len();
-    println!("{name}: {} of {of} lines agree within {largest:e}, {sensitive} by the last bits", of - wrong.len() - sensitive);
+    println!(
+        "{name}: {} of {of} lines agree within {largest:e}, {sensitive} by the last bits",
+        of - wrong.len() - sensitive
+    );
     assert!(wrong.is_empty(), "{name}: {} of {of} lines differ:\n{}", wrong.len(), wrong.join("\n"));
     assert!(sensitive * 50 <= of, "{name}: {sensitive} of {of} lines agree by the last bits only");
 }

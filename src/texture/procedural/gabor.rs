@@ -117,8 +117,7 @@ fn space(p: [f32; 3], frequency: f32, isotropy: f32, orientation: Vec3) -> Vec2 
                 for impulse in 0..IMPULSES {
                     let seed = |which: u8| [cell[0], cell[1], cell[2], f32::from(3 * impulse + which)];
                     let [cx, cy, cz, cw] = seed(1);
-                    let center =
-                        Vec3::new(unit([cx, cy, cz, cw]), unit([cz, cx, cw, cy]), unit([cw, cz, cy, cx]));
+                    let center = Vec3::new(unit([cx, cy, cz, cw]), unit([cz, cx, cw, cy]), unit([cw, cz, cy, cx]));
                     let from_center = inside - center;
                     let distance_squared = from_center.length_squared();
                     if distance_squared >= 1.0 {

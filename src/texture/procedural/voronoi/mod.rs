@@ -167,8 +167,7 @@ impl Voronoi {
         let unscaled = |x: f32| if sockets.scale == 0.0 { 0.0 } else { x / sockets.scale };
         let at = point.position.map(unscaled);
         let axis = |axis: usize| if axis < N { at[axis] } else { 0.0 };
-        let (position, w) =
-            if N == 1 { (Vec3::ZERO, at[0]) } else { (Vec3::new(axis(0), axis(1), axis(2)), axis(3)) };
+        let (position, w) = if N == 1 { (Vec3::ZERO, at[0]) } else { (Vec3::new(axis(0), axis(1), axis(2)), axis(3)) };
         VoronoiValue { distance: point.distance, color: point.color, position, w, radius: 0.0 }
     }
 }
