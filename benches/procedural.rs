@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use penumbra::math::Vec3;
 use penumbra::texture::procedural::*;
+use penumbra::texture::sky::{Atmosphere, Preetham, Scattering, ToRgb};
 
 /// Positions of one round.
 const COUNT: usize = 1024;
@@ -43,6 +44,7 @@ fn main() {
     for ((name, _), least) in table.iter().zip(least) {
         println!("{name:<44}{:>9.1}", least * 1e9 / COUNT as f64);
     }
+    skies();
 }
 
 const ALL: [Dimensions; 4] = [Dimensions::One, Dimensions::Two, Dimensions::Three, Dimensions::Four];
@@ -136,5 +138,41 @@ fn others(table: &mut Table) {
     let sockets =
         GaborSockets { scale: 5.0, frequency: 2.0, anisotropy: 1.0, orientation_2d: 0.785, orientation_3d: Vec3::ONE };
     time(table, "gabor Two", move |p, _| Gabor::Two.value(p, &sockets).value);
+    sky(table);
     time(table, "gabor Three", move |p, _| Gabor::Three.value(p, &sockets).value);
+}
+
+fn sky(table: &mut Table) {
+    let preetham = Preetham { sun_direction: Vec3::Z, turbidity: 2.2, to_rgb: ToRgb::Blender5 }.prepare();
+    time(table, "sky, Preetham", move |p, _| preetham.radiance(p.normalize()).g);
+    let sky = atmosphere(Scattering::Multiple).prepare();
+    time(table, "sky, atmosphere", move |p, _| sky.radiance(p.normalize()).g);
+}
+
+fn atmosphere(scattering: Scattering) -> Atmosphere {
+    Atmosphere {
+        scattering,
+        sun_elevation: 0.26,
+        sun_rotation: 0.0,
+        sun_size: Some(0.0095),
+        sun_intensity: 1.0,
+        altitude: 100.0,
+        air: 1.0,
+        aerosol: 1.0,
+        ozone: 1.0,
+    }
+}
+
+/// Making a sky's table, on all threads.
+fn skies() {
+    println!("{:<44}{:>9}", "sky", "ms");
+    for scattering in [Scattering::Nishita, Scattering::Single, Scattering::Multiple] {
+        let atmosphere = atmosphere(scattering);
+        let time = |_| {
+            let start = Instant::now();
+            black_box(atmosphere.prepare());
+            start.elapsed().as_secs_f64()
+        };
+        println!("{:<44}{:>9.0}", format!("{scattering:?}"), (0..5).map(time).fold(f64::MAX, f64::min) * 1e3);
+    }
 }

@@ -1,10 +1,11 @@
 //! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint) and
-//! textures computed from a position ([`procedural`]).
+//! textures computed from a position ([`procedural`]) or a direction ([`sky`]).
 
 mod image;
 mod lookup;
 pub mod procedural;
 mod pyramid;
+pub mod sky;
 mod srgb;
 mod texel;
 mod transform;
