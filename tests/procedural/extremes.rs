@@ -3,6 +3,7 @@
 
 use penumbra::math::Vec3;
 use penumbra::texture::procedural::*;
+use penumbra::texture::sky::{Atmosphere, Preetham, Scattering, ToRgb};
 
 const ALL: [Dimensions; 4] = [Dimensions::One, Dimensions::Two, Dimensions::Three, Dimensions::Four];
 
@@ -169,6 +170,32 @@ fn others(draws: &mut Draws, numbers: &[f32], values: &mut Vec<f32>) {
 #[test]
 fn no_number_makes_a_texture_panic() {
     assert!(!all(400, &NUMBERS).is_empty());
+}
+
+#[test]
+fn no_number_makes_a_sky_panic() {
+    for (scattering, number) in
+        [(Scattering::Nishita, f32::NAN), (Scattering::Single, f32::INFINITY), (Scattering::Multiple, -1e9)]
+    {
+        let sky = Atmosphere {
+            scattering,
+            sun_elevation: number,
+            sun_rotation: number,
+            sun_size: Some(number.abs()),
+            sun_intensity: number,
+            altitude: number,
+            air: number,
+            aerosol: number,
+            ozone: number,
+        };
+        let sky = sky.prepare();
+        let mut draws = Draws(7);
+        for _ in 0..100 {
+            let direction = draws.place(&NUMBERS);
+            let preetham = Preetham { sun_direction: direction, turbidity: number, to_rgb: ToRgb::Blender5 };
+            std::hint::black_box((sky.radiance(direction), preetham.prepare().radiance(direction)));
+        }
+    }
 }
 
 #[test]

@@ -41,19 +41,25 @@ impl Line {
     }
 }
 
-/// The largest difference, relative to 1 or to the value if that is larger.
-fn difference(ours: &[f32], theirs: &[f32]) -> f32 {
+/// The largest difference, relative to `unit` or to the value if that is larger.
+fn difference(ours: &[f32], theirs: &[f32], unit: f32) -> f32 {
     assert_eq!(ours.len(), theirs.len());
-    let one = |(a, b): (&f32, &f32)| if a == b { 0.0 } else { (a - b).abs() / b.abs().max(1.0) };
+    let one = |(a, b): (&f32, &f32)| if a == b { 0.0 } else { (a - b).abs() / b.abs().max(unit) };
     ours.iter().zip(theirs).map(one).fold(0.0, |most, d| if d > most || d.is_nan() { d } else { most })
 }
 
-/// Every line of a table against what `evaluate` makes of it, within `tolerance`.
+/// Every line of a table against what `evaluate` makes of it, within `tolerance` relative to 1 or to the
+/// value if that is larger.
+pub fn compare(name: &str, tolerance: f32, evaluate: impl Fn(&Line) -> Vec<f32>) {
+    compare_in(name, tolerance, 1.0, evaluate);
+}
+
+/// The same in another unit than 1: dark skies are compared among themselves.
 ///
 /// Fifteen octaves, sines of sines and far positions make large differences of the last bits of the
 /// position, and Cycles rounds its intermediate results in its own way (not even its versions agree on
 /// these lines). A line may differ by what such bits do to it; at most one in fifty may need that.
-pub fn compare(name: &str, tolerance: f32, evaluate: impl Fn(&Line) -> Vec<f32>) {
+pub fn compare_in(name: &str, tolerance: f32, unit: f32, evaluate: impl Fn(&Line) -> Vec<f32>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/procedural/reference").join(format!("{name}.txt"));
     let text = fs::read_to_string(path).unwrap();
     let lines: Vec<Line> = text.lines().filter(|l| !l.starts_with('#')).map(Line::parse).collect();
@@ -61,9 +67,9 @@ pub fn compare(name: &str, tolerance: f32, evaluate: impl Fn(&Line) -> Vec<f32>)
     let (mut wrong, mut sensitive, mut largest) = (Vec::new(), 0, 0.0_f32);
     for line in &lines {
         let ours = evaluate(line);
-        let off = difference(&ours, &line.outputs);
+        let off = difference(&ours, &line.outputs, unit);
         let last_bits = |input: usize| {
-            let nudged = |up| difference(&evaluate(&line.nudged(input, up)), &ours);
+            let nudged = |up| difference(&evaluate(&line.nudged(input, up)), &ours, unit);
             nudged(true).max(nudged(false))
         };
         if off <= tolerance {
