@@ -105,7 +105,7 @@ impl Matter {
         let density =
             DROPS_DENSITY * ((-height / DROPS_HEIGHT).exp() + DROPS_BACKGROUND / DROPS_DENSITY) * atmosphere.aerosol;
         let log = height.max(1e-4).ln();
-        let ozone = 3.785_474e20 * (-(log - 3.222_61) * (log - 3.222_61) * 5.555_555_6 - log).exp();
+        let ozone = 3.785_474e20 * (-(log - 3.222_61) * (log - 3.222_61) * 5.555_556 - log).exp();
         let air = AIR * (-0.077_719_71 * height.powf(1.163_642_4)).exp() * atmosphere.air;
         let drops = DROPS_SCATTER * density;
         let absorbed = DROPS_ABSORB * density + OZONE * OZONE_DOBSON * ozone * atmosphere.ozone;
