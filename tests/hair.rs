@@ -78,12 +78,15 @@ fn white_hair_in_a_white_world_is_not_to_be_seen() {
 fn a_ball_hides_its_share_of_the_sky_and_shines_by_it() {
     for (radius, height) in [(0.5_f32, 1.0_f32), (0.1, 2.0), (1e-3, 0.01), (300.0, 1000.0)] {
         let mut builder = Builder::default();
-        let (floor, glow) = (builder.lambert(0.5), builder.material(MaterialDesc {
-            base_color: ColorInput::constant([0.0; 3]),
-            specular: ScalarInput::constant(0.0),
-            emission: ColorInput::constant([3.0; 3]),
-            ..MaterialDesc::default()
-        }));
+        let (floor, glow) = (
+            builder.lambert(0.5),
+            builder.material(MaterialDesc {
+                base_color: ColorInput::constant([0.0; 3]),
+                specular: ScalarInput::constant(0.0),
+                emission: ColorInput::constant([3.0; 3]),
+                ..MaterialDesc::default()
+            }),
+        );
         builder.ground(100.0 * f64::from(height), floor);
         builder.rounds(balls(&[[0.0, height, 0.0, radius]]), glow);
         builder.look([0.0; 3], [0.7, -0.7, 0.0], 1e-4 * f64::from(height));

@@ -306,7 +306,8 @@ fn rays_leave_the_surface_that_they_start_on() {
             let mut seen = 0;
             for _ in 0..1500 {
                 let target = center_of(ends[0]).lerp(center_of(ends[1]), 0.5 + 0.5 * f64::from(rng.f())).as_vec3();
-                let (from, target) = (transform.transform_point3(target + 3.0 * rng.dir()), transform.transform_point3(target));
+                let (from, target) =
+                    (transform.transform_point3(target + 3.0 * rng.dir()), transform.transform_point3(target));
                 let Some(hit) = shoot(&bvhs, &Ray::new(from, target - from)) else { continue };
                 let (p, p_err, ng) = surface(&hit);
                 seen += 1;

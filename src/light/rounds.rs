@@ -10,9 +10,7 @@ use std::sync::Arc;
 use super::placed::Placed;
 use super::tree::refined;
 use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
-use crate::math::{
-    Affine3A, Bounds, DMat3, DVec3, Rgb, RoundPoint, Vec3, gamma, offset_ray_origin, place_point,
-};
+use crate::math::{Affine3A, Bounds, DMat3, DVec3, Rgb, RoundPoint, Vec3, gamma, offset_ray_origin, place_point};
 use crate::shape::Rounds;
 
 /// Numbers the choice of a segment among those that draw on one random number.

@@ -190,7 +190,7 @@ fn diamond(x: f64, y: f64) -> f64 {
 fn undo_diamond(angle: f64) -> [f64; 2] {
     let y = if angle.abs() <= 1.0 { angle } else { (2.0 - angle.abs()) * angle.signum() };
     let x = 1.0 - angle.abs();
-    let length = x.hypot(y);
+    let length = (x * x + y * y).sqrt();
     [x / length, y / length]
 }
 
@@ -260,7 +260,13 @@ mod tests {
             let (n, mut pieces, mut normals, mut volume) = (200, [0.0; 3], DVec3::ZERO, 0.0);
             for (i, k) in (0..n).flat_map(|i| (0..n).map(move |k| (i, k))) {
                 let uv = cone.sample([(f64::from(i) + 0.5) / f64::from(n), (f64::from(k) + 0.5) / f64::from(n)]);
-                let piece = if uv[0] < 0.0 { 0 } else if uv[0] <= 1.0 { 1 } else { 2 };
+                let piece = if uv[0] < 0.0 {
+                    0
+                } else if uv[0] <= 1.0 {
+                    1
+                } else {
+                    2
+                };
                 pieces[piece] += 1.0 / f64::from(n * n);
                 let point = cone.point(uv);
                 normals += point.normal / f64::from(n * n);

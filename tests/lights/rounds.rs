@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use penumbra::light::{AnyEmitter, EmitterHit, Receiver, Emitter, RoundEmitters, RoundLight};
+use penumbra::light::{AnyEmitter, Emitter, EmitterHit, Receiver, RoundEmitters, RoundLight};
 use penumbra::math::{Affine3A, Ball, DVec3, Mat3, Rgb, RoundCone, Vec3, center_of};
 use penumbra::shape::Rounds;
 
@@ -38,12 +38,7 @@ fn hit<const I: usize>(case: &Case, wi: Vec3) -> Option<EmitterHit> {
     }
     let foot = cone.foot(from + wi * t);
     assert!(foot.distance.abs() < 1e-6, "{foot:?}");
-    Some(EmitterHit {
-        dist: t as f32,
-        ng: foot.normal.as_vec3(),
-        triangle: 0,
-        uv: cone.coordinates(from + wi * t),
-    })
+    Some(EmitterHit { dist: t as f32, ng: foot.normal.as_vec3(), triangle: 0, uv: cone.coordinates(from + wi * t) })
 }
 
 fn radiance(case: &Case, _wi: Vec3, hit: &EmitterHit) -> Rgb {

@@ -152,7 +152,11 @@ impl Curves {
             warnings.push(place, format!("{dropped} curves have points that are not finite; they are left out"));
         }
         let set = Set { curves: &curves, lines };
-        if normals.is_some() { set.ribbons(channels, wants, place, warnings) } else { set.strands(channels, &motion, wants, place, warnings) }
+        if normals.is_some() {
+            set.ribbons(channels, wants, place, warnings)
+        } else {
+            set.strands(channels, &motion, wants, place, warnings)
+        }
     }
 }
 

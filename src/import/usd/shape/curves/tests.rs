@@ -145,8 +145,7 @@ fn other_curves_are_approximated_or_told() {
     let body = "int[] curveVertexCounts = [2]
         point3f[] points = [(0, 0, 0), (1, 0, 0)]
         float[] widths = [0.1] (interpolation = \"constant\")";
-    let (built, warnings) =
-        curves("HermiteCurves", &format!("{body}\nvector3f[] tangents = [(0, 3, 0), (0, -3, 0)]"));
+    let (built, warnings) = curves("HermiteCurves", &format!("{body}\nvector3f[] tangents = [(0, 3, 0), (0, -3, 0)]"));
     // y = 3t(1 − t)… of two handles of length 1: 3/4 in the middle.
     let points = built.unwrap().into_rounds().points;
     assert!((extent(&points).1.y - 0.75).abs() < 1e-2, "{warnings:?}");
