@@ -89,9 +89,24 @@ impl Scene {
         py.detach(|| self.lock().set_mesh(key, name, &arrays, &uvs, &colors)).map_err(|error| exception(&error))
     }
 
-    /// Forgets the mesh `key`.
-    fn remove_mesh(&self, key: u64) {
-        self.lock().remove_mesh(key);
+    /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the
+    /// index behind its last point); points that stand alone where `ends` is empty.
+    fn set_rounds(
+        &self,
+        key: u64,
+        name: &str,
+        positions: Floats<'_>,
+        radii: Floats<'_>,
+        ends: PyReadonlyArray1<'_, u32>,
+    ) -> PyResult<()> {
+        let ends = ends.as_slice().map_err(|_| contiguous())?;
+        let (positions, radii) = (floats(&positions)?, floats(&radii)?);
+        self.lock().set_rounds(key, name, positions, radii, ends).map_err(|error| exception(&error))
+    }
+
+    /// Forgets the shape `key`.
+    fn remove_shape(&self, key: u64) {
+        self.lock().remove_shape(key);
     }
 
     /// Takes in the bytes of a packed image file.

@@ -240,3 +240,36 @@ def textured():
     tree.links.new(texture.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
     bpy.data.objects["Plane"].data.materials[0] = floor
     lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def points():
+    room()
+    mesh = bpy.data.meshes.new("Seeds")
+    mesh.from_pydata([(x * 0.5 - 1.0, -1.0, 0.3 + 0.1 * x) for x in range(5)], [], [])
+    obj = add("Seeds", mesh)
+    # Geometry nodes turn the vertices into a point cloud.
+    tree = bpy.data.node_groups.new("ToPoints", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    first, last = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    to_points = tree.nodes.new("GeometryNodeMeshToPoints")
+    to_points.inputs["Radius"].default_value = 0.2
+    tree.links.new(first.outputs[0], to_points.inputs["Mesh"])
+    tree.links.new(to_points.outputs[0], last.inputs[0])
+    obj.modifiers.new("Points", "NODES").node_group = tree
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def hair():
+    room()
+    curves = bpy.data.hair_curves.new("Hair")
+    curves.add_curves([2] * 40)
+    radius = curves.attributes.get("radius") or curves.attributes.new("radius", "FLOAT", "POINT")
+    for i in range(40):
+        x = i * 0.1 - 2.0
+        curves.points[2 * i].position = (x, -1.5, 0.0)
+        curves.points[2 * i + 1].position = (x, -1.5, 0.8)
+        radius.data[2 * i].value = radius.data[2 * i + 1].value = 0.03
+    add("Hair", curves)
+    bpy.context.scene.cycles_curves.shape = "THICK"
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)

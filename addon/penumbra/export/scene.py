@@ -6,10 +6,12 @@ import os
 import bpy
 import numpy as np
 
-from . import camera, lights, mesh, nodes
+from . import camera, lights, mesh, nodes, rounds
 
 # Types of objects that evaluate to a mesh.
-_SHAPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+_MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+# Hair curves and point clouds, which are strands and balls.
+_ROUNDS = {"CURVES", "POINTCLOUD"}
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
@@ -27,11 +29,11 @@ class Exporter:
         for update in depsgraph.updates:
             if update.is_updated_geometry:
                 data = update.id.data if isinstance(update.id, bpy.types.Object) else update.id
-                if isinstance(data, bpy.types.Mesh):
+                if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
                     self._meshes.discard(_key(data))
         self.export(depsgraph, size, space=space)
         for key in self._meshes - self._used:
-            self.scene.remove_mesh(key)
+            self.scene.remove_shape(key)
         self._meshes &= self._used
 
     def export(self, depsgraph, size, camera_object=None, space=None):
@@ -49,7 +51,7 @@ class Exporter:
             if obj.type == "LIGHT":
                 self._lights.append(lights.lamp(instance, self))
                 self._links.append((self._lights[-1], obj))
-            elif obj.type in _SHAPES:
+            elif obj.type in _MESHES or obj.type in _ROUNDS:
                 index = self._object(obj, instance)
                 if index is not None:
                     of_instance.append(index)
@@ -110,16 +112,20 @@ class Exporter:
 
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
-        own = obj.type == "MESH"
+        own = obj.type == "MESH" or obj.type in _ROUNDS
         key = _key(obj.data)
         self._used.add(key)
         if key in self._meshes:
             return key
         data = obj.data if own else obj.to_mesh()
         try:
-            if data is None or not data.polygons:
+            if obj.type in _ROUNDS:
+                if not rounds.hand_over(self.scene, key, data):
+                    return None
+            elif data is None or not data.polygons:
                 return None
-            mesh.hand_over(self.scene, key, data)
+            else:
+                mesh.hand_over(self.scene, key, data)
         except ValueError as error:
             self.warnings.append(f"{obj.name}: {error}; it is left out")
             return None
@@ -213,6 +219,8 @@ class Exporter:
 def _key(data):
     """A number for a data-block: its address, which may be that of another one before, and what it holds."""
     counts = (len(data.vertices), len(data.loops)) if isinstance(data, bpy.types.Mesh) else ()
+    if isinstance(data, (bpy.types.Curves, bpy.types.PointCloud)):
+        counts = (len(data.points),)
     return hash((data.as_pointer(), data.name_full, *counts)) & 0x7FFF_FFFF_FFFF_FFFF
 
 

@@ -359,7 +359,7 @@ pub struct ObjectData {
     pub name: String,
     /// Name of the topmost parent.
     pub asset: String,
-    /// Key of its mesh.
+    /// Key of its mesh, strands or points.
     pub mesh: u64,
     /// Index into [`Document::materials`] of each slot.
     pub materials: Vec<Option<u32>>,

@@ -14,6 +14,7 @@ mod material;
 mod mesh;
 mod nodes;
 mod random;
+mod rounds;
 mod scene;
 mod transform;
 mod view;

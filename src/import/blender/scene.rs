@@ -1,6 +1,7 @@
 //! A scene of Blender's, kept between renders so that only what changes is handed over again.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::document::Document;
 use super::image::{ImageSource, Images};
@@ -9,8 +10,8 @@ use super::light::LampShader;
 use super::mesh::{self, Dress, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
 use super::transform::affine_of_floats;
-use super::{camera, light, material, nodes, random, world};
-use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
+use super::{camera, light, material, nodes, random, rounds, world};
+use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -18,10 +19,11 @@ use crate::error::{Error, Place, Result, Warnings};
 pub struct BlenderScene {
     document: Document,
     meshes: HashMap<u64, NamedMesh>,
+    rounds: HashMap<u64, Arc<RoundsDesc>>,
     images: HashMap<String, ImageSource>,
     instances: Vec<Placement>,
-    /// What was told of meshes as they came.
-    of_meshes: HashMap<u64, Warnings>,
+    /// What was told of shapes as they came.
+    of_shapes: HashMap<u64, Warnings>,
 }
 
 /// An instance of an object.
@@ -59,18 +61,32 @@ impl BlenderScene {
         uvs: &[LayerArray<'_>],
         colors: &[LayerArray<'_>],
     ) -> Result<()> {
-        self.remove_mesh(key);
+        self.remove_shape(key);
         let mut warnings = Warnings::new();
         let mesh = mesh::mesh(name, &self.place(), arrays, uvs, colors, &mut warnings)?;
         self.meshes.insert(key, mesh);
-        self.of_meshes.insert(key, warnings);
+        self.of_shapes.insert(key, warnings);
         Ok(())
     }
 
-    /// Forgets a mesh.
-    pub fn remove_mesh(&mut self, key: u64) {
+    /// Takes in the strands, or points where `ends` is empty, that objects name by `key`.
+    ///
+    /// # Errors
+    /// Arrays that don't fit together; what was there of that key is gone then.
+    pub fn set_rounds(&mut self, key: u64, name: &str, positions: &[f32], radii: &[f32], ends: &[u32]) -> Result<()> {
+        self.remove_shape(key);
+        let mut warnings = Warnings::new();
+        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, &mut warnings)?;
+        self.rounds.insert(key, rounds.into());
+        self.of_shapes.insert(key, warnings);
+        Ok(())
+    }
+
+    /// Forgets a mesh, strands or points.
+    pub fn remove_shape(&mut self, key: u64) {
         self.meshes.remove(&key);
-        self.of_meshes.remove(&key);
+        self.rounds.remove(&key);
+        self.of_shapes.remove(&key);
     }
 
     /// Takes in an image that the document says is in memory.
@@ -135,7 +151,7 @@ impl BlenderScene {
         let document = &self.document;
         let trees = || document.materials.iter().filter_map(|material| material.nodes.as_ref());
         let dress = Dress { uv_maps: self.uv_sets().names().to_vec(), tangents: trees().any(TreeData::needs_tangents) };
-        let mut index_of: HashMap<u64, u32> = HashMap::new();
+        let mut known: HashMap<u64, ShapeRef> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
         let mut lost = 0;
         for &Placement { object, matrix, random } in &self.instances {
@@ -143,18 +159,29 @@ impl BlenderScene {
                 lost += 1;
                 continue;
             };
-            let Some(mesh) = self.meshes.get_mut(&data.mesh) else { continue };
-            let index = *index_of.entry(data.mesh).or_insert_with(|| {
-                warnings.extend(self.of_meshes.get(&data.mesh).cloned().unwrap_or_default());
-                desc.meshes.push(mesh.dressed(&dress));
-                desc.meshes.len() as u32 - 1
-            });
+            let shape = match known.get(&data.mesh) {
+                Some(shape) => *shape,
+                None => {
+                    let shape = if let Some(mesh) = self.meshes.get_mut(&data.mesh) {
+                        desc.meshes.push(mesh.dressed(&dress));
+                        ShapeRef::Mesh(desc.meshes.len() as u32 - 1)
+                    } else if let Some(rounds) = self.rounds.get(&data.mesh) {
+                        desc.rounds.push(rounds.clone());
+                        ShapeRef::Rounds(desc.rounds.len() as u32 - 1)
+                    } else {
+                        continue;
+                    };
+                    warnings.extend(self.of_shapes.get(&data.mesh).cloned().unwrap_or_default());
+                    known.insert(data.mesh, shape);
+                    shape
+                }
+            };
             of_object[object as usize].push(desc.instances.len() as u32);
             desc.instances.push(InstanceDesc {
                 name: data.name.as_str().into(),
                 place: desc.place.at(&data.name),
                 asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
-                shape: ShapeRef::Mesh(index),
+                shape,
                 transform: affine_of_floats(&matrix),
                 motion: Vec::new(),
                 materials: data.materials.clone(),

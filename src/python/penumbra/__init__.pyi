@@ -49,7 +49,15 @@ class Scene:
         colors: Sequence[tuple[str, NDArray[np.float32]]] = ...,
         texture_space: Sequence[Sequence[float]] | None = None,
     ) -> None: ...
-    def remove_mesh(self, key: int) -> None: ...
+    def set_rounds(
+        self,
+        key: int,
+        name: str,
+        positions: NDArray[np.float32],
+        radii: NDArray[np.float32],
+        ends: NDArray[np.uint32],
+    ) -> None: ...
+    def remove_shape(self, key: int) -> None: ...
     def set_image_bytes(self, name: str, bytes: bytes) -> None: ...
     def set_image_pixels(
         self, name: str, width: int, height: int, pixels: NDArray[np.float32], linear: bool
