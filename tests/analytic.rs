@@ -1,6 +1,7 @@
 //! Whole renders against closed forms.
 
 #[path = "support/scene.rs"]
+#[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;
 
 use std::f64::consts::PI;
