@@ -184,7 +184,6 @@ fn next_surface(
         path.travelled += hit.t;
         if scene.effects.light_path {
             it.path = PathState { length: path.travelled, ..path.state };
-            path.state.transparent = path.state.transparent.saturating_add(1);
         }
         if scene.effects.absorption {
             path.beta *= transmitted(&path.media, hit.t);
@@ -193,9 +192,9 @@ fn next_surface(
         let opacity = if scene.effects.cutouts { scene.opacity(&it) } else { 1.0 };
         visit(path, Met::Surface(&it, opacity));
         if opacity == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < opacity {
-            path.state.transparent = it.path.transparent;
             return Some(it);
         }
+        path.state.transparent = path.state.transparent.saturating_add(1);
         path.ray = it.continued(&path.ray, hit.t);
     }
     // Too many layers: stopped, as a shadow ray is.
@@ -322,9 +321,10 @@ fn scatter(
         // A sample stands for the solid angle 1/pdf; textures seen by it need no finer detail.
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
-    path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
+    if scene.effects.light_path {
+        path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
+    }
     let last = Scattering {
-        state: path.state,
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
         light_samples,
@@ -340,7 +340,7 @@ fn scatter(
     }
     let unshadowed = first && scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK;
     if unshadowed || scene.effects.own_shadows {
-        emitters_along(scene, &last, &path.ray, path.cone, unshadowed, |found| {
+        emitters_along(scene, &last, &path.state, &path.ray, path.cone, unshadowed, |found| {
             let weight = seen(scattered.weight, found.rules.seen);
             if unshadowed {
                 sample.unshadowed += weight.diffuse * (beta * found.le);

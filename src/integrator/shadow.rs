@@ -32,11 +32,12 @@ impl Found<'_> {
     }
 }
 
-/// Calls `visit` with every emitter that `ray` from `last` would meet; if `all` is false only with
+/// Calls `visit` with every emitter that `ray` from `last` would meet, in the state of the path then; if `all` is false only with
 /// those whose light not everything stops.
 pub fn emitters_along(
     scene: &Scene,
     last: &Scattering,
+    state: &PathState,
     ray: &Ray,
     mut cone: RayCone,
     all: bool,
@@ -65,7 +66,7 @@ pub fn emitters_along(
         travelled += hit.t;
         let mut it = scene.interaction(&rest, &hit, cone);
         if scene.effects.light_path {
-            it.path = PathState { length: travelled, ..last.state };
+            it.path = PathState { length: travelled, ..*state };
         }
         cone.width = cone.at(hit.t);
         let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);

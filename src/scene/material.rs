@@ -131,15 +131,17 @@ pub struct Material {
     pub programs: Option<Arc<Programs>>,
 }
 
+/// What a program gives at a hit, where it was run.
+type Values = Option<[Value; MOST_OUTPUTS]>;
+
 /// A material's lookups at one point, each texture read at most once.
 struct Lookups<'a> {
     scene: &'a Scene,
     material: &'a Material,
     it: &'a Interaction,
     last: Option<(u8, [f32; 4])>,
-    /// Values of the program that answers for these inputs, as soon as one is asked for.
-    program: Option<&'a Program>,
-    values: Option<[Value; MOST_OUTPUTS]>,
+    /// Values of the program that answers for these inputs.
+    values: &'a [Value],
 }
 
 impl Lookups<'_> {
@@ -176,14 +178,8 @@ impl Lookups<'_> {
         }
     }
 
-    #[cold]
-    fn value(&mut self, value: u8) -> Value {
-        let Self { scene, it, program, .. } = self;
-        let values = self.values.get_or_insert_with(|| match program {
-            Some(program) => scene.spot(it).run(program),
-            None => [[0.0; 4]; MOST_OUTPUTS],
-        });
-        values[usize::from(value)]
+    fn value(&self, value: u8) -> Value {
+        self.values.get(usize::from(value)).copied().unwrap_or_default()
     }
 }
 
@@ -227,15 +223,29 @@ impl Scene {
         Spot { around, it }
     }
 
-    /// `program` says which of the material's answers for the inputs that are looked up.
+    /// `program` says which of the material's answers for the inputs that are looked up, `values` is where
+    /// what it gives is kept.
     fn lookups<'a>(
         &'a self,
         it: &'a Interaction,
-        program: impl FnOnce(&'a Programs) -> Option<&'a Program>,
+        program: fn(&Programs) -> Option<&Program>,
+        values: &'a mut Values,
     ) -> Lookups<'a> {
         let material = self.material(it);
-        let program = material.programs.as_deref().and_then(program);
-        Lookups { scene: self, material, it, last: None, program, values: None }
+        let values = match &material.programs {
+            None => &[],
+            Some(programs) => self.run(it, program(programs), values),
+        };
+        Lookups { scene: self, material, it, last: None, values }
+    }
+
+    // Out of line, so that materials without graphs have no part in it.
+    #[cold]
+    fn run<'a>(&self, it: &Interaction, program: Option<&Program>, values: &'a mut Values) -> &'a [Value] {
+        match program {
+            Some(program) => values.insert(self.spot(it).run(program)),
+            None => &[],
+        }
     }
 
     fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
@@ -252,15 +262,16 @@ impl Scene {
             Opacity::Mask(_) => 0.0,
             Opacity::Blend => it.footprint,
         };
-        let it = &Interaction { footprint, ..*it };
-        let alpha = self.lookups(it, |programs| programs.opacity.as_ref()).scalar(&material.alpha);
+        let (it, mut values) = (&Interaction { footprint, ..*it }, None);
+        let alpha = self.lookups(it, |programs| programs.opacity.as_ref(), &mut values).scalar(&material.alpha);
         material.opacity.of(alpha * self.vertex_color(it).map_or(1.0, |c| c[3]))
     }
 
     /// Radiance that the surface emits at `it`.
     pub fn emission(&self, it: &Interaction) -> Rgb {
         let material = self.material(it);
-        let mut lookups = self.lookups(it, |programs| programs.emission.as_ref());
+        let mut values = None;
+        let mut lookups = self.lookups(it, |programs| programs.emission.as_ref(), &mut values);
         if !material.unlit {
             let le = lookups.color(&material.emission);
             return if material.programs.is_some() { le.map(|c| c.max(0.0)) } else { le };
@@ -272,7 +283,8 @@ impl Scene {
     /// What scatters at `it`.
     pub fn surface(&self, it: &Interaction) -> Surface {
         let material = self.material(it);
-        let mut lookups = self.lookups(it, |programs| programs.surface.as_ref());
+        let mut values = None;
+        let mut lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
         let tint = self.vertex_color(it).map_or(Rgb::WHITE, |[r, g, b, _]| Rgb::new(r, g, b));
         Surface {
             base_color: (lookups.color(&material.base_color) * tint).map(|c| c.clamp(0.0, 1.0)),
@@ -289,7 +301,8 @@ impl Scene {
     /// Baked occlusion of bounced diffuse light at `it`; 1 for none.
     pub fn occlusion(&self, it: &Interaction) -> f32 {
         let Some(occlusion) = &self.material(it).occlusion else { return 1.0 };
-        let mut lookups = self.lookups(it, |programs| programs.occlusion.as_ref());
+        let mut values = None;
+        let mut lookups = self.lookups(it, |programs| programs.occlusion.as_ref(), &mut values);
         let value = lookups.scalar(&ScalarInput { factor: 1.0, ..*occlusion });
         1.0 + occlusion.factor * (value - 1.0)
     }

@@ -134,7 +134,7 @@ impl Spot<'_> {
                 let corners = mesh.corners(triangle).map(|p| p.to_array());
                 DVec3::from(self.blend(corners, self.beside(at).uv)) + mesh.center
             }
-            None => self.out_of_world(Quantity::Point, Space::Object, self.world_position(at)),
+            None => self.world_to(Quantity::Point, Space::Object, self.world_position(at)),
         }
     }
 
@@ -207,7 +207,7 @@ impl Spot<'_> {
         (m * crate::math::Vec3A::from(n.as_vec3())).as_dvec3().normalize_or_zero()
     }
 
-    fn to_world(&self, quantity: Quantity, from: Space, v: DVec3) -> DVec3 {
+    fn world_from(&self, quantity: Quantity, from: Space, v: DVec3) -> DVec3 {
         match (from, quantity) {
             (Space::World, _) => v,
             (Space::Object, Quantity::Normal) => self.normal_to_world(v),
@@ -225,7 +225,7 @@ impl Spot<'_> {
         }
     }
 
-    fn out_of_world(&self, quantity: Quantity, to: Space, v: DVec3) -> DVec3 {
+    fn world_to(&self, quantity: Quantity, to: Space, v: DVec3) -> DVec3 {
         match (to, quantity) {
             (Space::World, _) => v,
             (Space::Object, Quantity::Normal) => (self.to_render().transpose() * v).normalize_or_zero(),
@@ -267,7 +267,7 @@ impl Hit for Spot<'_> {
             Leaf::ObjectPosition => vector(self.object_position(at)),
             Leaf::ObjectNormal => vector(self.smooth_normal(at).normalize_or_zero() * self.side()),
             Leaf::Generated => vector(self.generated(at)),
-            Leaf::CameraPosition => vector(self.out_of_world(Quantity::Point, Space::Camera, self.world_position(at))),
+            Leaf::CameraPosition => vector(self.world_to(Quantity::Point, Space::Camera, self.world_position(at))),
             Leaf::Window => {
                 let [x, y] = self.around.camera.window((it.p.as_dvec3() + self.beside(at).away).as_vec3());
                 [f64::from(x), f64::from(y), 0.0, 0.0]
@@ -313,8 +313,8 @@ impl Hit for Spot<'_> {
     }
 
     fn transform(&self, quantity: Quantity, from: Space, to: Space, [x, y, z, w]: Value) -> Value {
-        let world = self.to_world(quantity, from, DVec3::new(x, y, z));
-        let there = self.out_of_world(quantity, to, world);
+        let world = self.world_from(quantity, from, DVec3::new(x, y, z));
+        let there = self.world_to(quantity, to, world);
         [there.x, there.y, there.z, w]
     }
 

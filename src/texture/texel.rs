@@ -52,6 +52,7 @@ impl Format {
 
     /// Calls `with` with a function from the index of a texel's first value to color and alpha; the
     /// match on the storage happens once for all the texels that `with` reads.
+    #[inline(always)]
     pub(super) fn read<R>(self, pixels: &PixelData, with: impl Reader<R>) -> R {
         let n = self.channels;
         match (pixels, self.space) {
