@@ -31,8 +31,7 @@ fn disk([u, v]: [f32; 2]) -> [f32; 2] {
     if a == 0.0 && b == 0.0 {
         return [0.0; 2];
     }
-    let (r, phi) =
-        if a.abs() > b.abs() { (a, 0.25 * PI * (b / a)) } else { (b, 0.5 * PI - 0.25 * PI * (a / b)) };
+    let (r, phi) = if a.abs() > b.abs() { (a, 0.25 * PI * (b / a)) } else { (b, 0.5 * PI - 0.25 * PI * (a / b)) };
     let (sin, cos) = phi.sin_cos();
     [r * cos, r * sin]
 }

@@ -46,8 +46,7 @@ mod tests {
             clip_near: 0.5,
             clip_far: 10.0,
         };
-        let camera =
-            Panorama { view, longitude: [-PI, PI], latitude: [-0.5 * PI, 0.5 * PI], size: [200.0, 100.0] };
+        let camera = Panorama { view, longitude: [-PI, PI], latitude: [-0.5 * PI, 0.5 * PI], size: [200.0, 100.0] };
         let d = |x: f32, y: f32| camera.ray(x, y).ray.d;
         assert!((d(100.0, 50.0) - Vec3::NEG_Z).length() < 1e-6);
         assert!((d(150.0, 50.0) - Vec3::X).length() < 1e-6);

@@ -140,7 +140,8 @@ fn render_frame(
         typed => typed.filter(|_| sample.is_none()),
     };
     environment::apply(args, &mut desc)?;
-    let view = job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
+    let view =
+        job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
     let settings = &match args.value_source("passes") {
         Some(ValueSource::CommandLine) => settings.clone(),
         _ => job::with_own_passes(settings, &desc, &mut warnings),

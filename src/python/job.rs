@@ -29,11 +29,7 @@ pub struct Watch {
 
 /// Runs `work` on a thread of its own. The calling thread sleeps without the interpreter's lock, and
 /// holds it to call `watch`; an exception there stops the render and is raised once it has ended.
-pub fn run<T: Send>(
-    py: Python<'_>,
-    watch: &Watch,
-    work: impl FnOnce(&Mailbox) -> Result<T> + Send,
-) -> PyResult<T> {
+pub fn run<T: Send>(py: Python<'_>, watch: &Watch, work: impl FnOnce(&Mailbox) -> Result<T> + Send) -> PyResult<T> {
     let mailbox = Arc::new(Mailbox::default());
     let mut raised = None;
     let done = py.detach(|| {
@@ -128,4 +124,3 @@ impl<F: Fn()> Drop for OnDrop<F> {
         (self.0)();
     }
 }
-

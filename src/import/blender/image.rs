@@ -173,7 +173,12 @@ mod tests {
     fn each_image_and_each_look_is_there_once() {
         let data: HashMap<String, ImageData> =
             ["a", "b"].map(|name| (name.to_owned(), ImageData { in_memory: true, ..ImageData::default() })).into();
-        let pixels = ImageSource::Pixels { width: 1, height: 2, values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0], linear: true };
+        let pixels = ImageSource::Pixels {
+            width: 1,
+            height: 2,
+            values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+            linear: true,
+        };
         let in_memory = [("a".to_owned(), pixels)].into();
         let place = Place::default();
         let mut images = Images::new(&data, &in_memory, &place);

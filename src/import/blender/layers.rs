@@ -19,7 +19,10 @@ pub struct UvSets {
 
 impl UvSets {
     /// Sets for the maps of `names` in `meshes`.
-    pub fn new<'a>(names: impl IntoIterator<Item = String>, meshes: impl Iterator<Item = &'a NamedMesh> + Clone) -> Self {
+    pub fn new<'a>(
+        names: impl IntoIterator<Item = String>,
+        meshes: impl Iterator<Item = &'a NamedMesh> + Clone,
+    ) -> Self {
         let mut sets = Self::default();
         for name in names {
             let has = |mesh: &NamedMesh| mesh.uv_names.iter().any(|known| **known == *name);

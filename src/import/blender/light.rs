@@ -36,8 +36,7 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
     }
     let place = place.at(&data.name);
     let scale = data.energy * data.exposure.exp2();
-    let power: [f64; 3] =
-        std::array::from_fn(|i| scale * data.color[i] * data.temperature_color[i] * shader.factor[i]);
+    let power: [f64; 3] = std::array::from_fn(|i| scale * data.color[i] * data.temperature_color[i] * shader.factor[i]);
     let times = |factor: f64| power.map(|c| c * factor);
     let mut transform = affine(&data.matrix);
     let kind = match data.r#type.as_str() {

@@ -37,7 +37,12 @@ fn material(
         None => {
             let [r, g, b, _] = data.diffuse_color;
             let plain = ScalarInput::constant;
-            MaterialDesc { base_color: ColorInput::constant([r, g, b]), roughness: plain(1.0), specular: plain(0.0), ..base }
+            MaterialDesc {
+                base_color: ColorInput::constant([r, g, b]),
+                roughness: plain(1.0),
+                specular: plain(0.0),
+                ..base
+            }
         }
     }
 }

@@ -89,7 +89,9 @@ pub fn mesh(
     }
     let mut attributes = Vec::new();
     for color in colors {
-        let Some(values) = layer.fit(&format!("colour attribute \"{}\"", color.name), color.values, warnings) else { continue };
+        let Some(values) = layer.fit(&format!("colour attribute \"{}\"", color.name), color.values, warnings) else {
+            continue;
+        };
         if attributes.is_empty() {
             // The one to render with is also found without a name.
             attributes.push(NamedAttribute { name: "".into(), values: values.clone() });
@@ -142,11 +144,7 @@ fn kept_triangles(
 }
 
 /// Material slot of each triangle; `None` where all are 0.
-fn slots(
-    arrays: &MeshArrays<'_>,
-    kept: Option<&[u32]>,
-    broken: &dyn Fn(String) -> Error,
-) -> Result<Option<Vec<u16>>> {
+fn slots(arrays: &MeshArrays<'_>, kept: Option<&[u32]>, broken: &dyn Fn(String) -> Error) -> Result<Option<Vec<u16>>> {
     if arrays.material_index.is_empty() {
         return Ok(None);
     }
@@ -189,8 +187,10 @@ impl Layers<'_> {
             Some(Attribute::Point(chunks.to_vec()))
         } else {
             let (given, name) = (values.len() / N, self.name);
-            let told = format!("the {what} of the mesh \"{name}\" has {given} values for {} vertices and {} corners; left out",
-                self.points, self.corners);
+            let told = format!(
+                "the {what} of the mesh \"{name}\" has {given} values for {} vertices and {} corners; left out",
+                self.points, self.corners
+            );
             warnings.push(self.place, told);
             None
         }

@@ -15,14 +15,16 @@ mod mesh;
 mod nodes;
 mod random;
 mod scene;
+mod stamp;
 mod transform;
 mod world;
 
 pub use document::{
-    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, PanoramaData,
-    RenderData, VisibilityData, WorldData,
+    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, PanoramaData, RenderData,
+    VisibilityData, WorldData,
 };
 pub use image::ImageSource;
 pub use mesh::{LayerArray, MeshArrays};
 pub use nodes::{NodeData, SocketData, TreeData, Value};
 pub use scene::BlenderScene;
+pub(super) use stamp::{Moment, Stamp};

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use super::document::Document;
 use super::image::{ImageSource, Images};
+use super::layers::UvSets;
+use super::light::LampShader;
 use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
 use super::transform::affine_of_floats;
-use super::layers::UvSets;
-use super::light::LampShader;
 use super::{camera, light, material, nodes, random, world};
 use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc};
 use crate::error::{Error, Place, Result, Warnings};
@@ -41,8 +41,9 @@ impl BlenderScene {
     /// # Errors
     /// JSON that is no [`Document`].
     pub fn set_document(&mut self, json: &str) -> Result<()> {
-        self.document = serde_json::from_str(json)
-            .map_err(|error| Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}")))?;
+        self.document = serde_json::from_str(json).map_err(|error| {
+            Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}"))
+        })?;
         Ok(())
     }
 
@@ -90,8 +91,7 @@ impl BlenderScene {
             return Err(Error::invalid(&self.place(), what));
         }
         let placements = objects.iter().zip(matrices).zip(random);
-        self.instances =
-            placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
+        self.instances = placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
         Ok(())
     }
 

@@ -19,12 +19,7 @@ pub struct WorldShader {
 }
 
 /// The dome that `data` is; `None` for a black one.
-pub fn dome(
-    data: &WorldData,
-    images: &mut Images<'_>,
-    place: &Place,
-    warnings: &mut Warnings,
-) -> Option<LightDesc> {
+pub fn dome(data: &WorldData, images: &mut Images<'_>, place: &Place, warnings: &mut Warnings) -> Option<LightDesc> {
     let place = place.at(&data.name);
     let shader = match &data.nodes {
         Some(tree) => nodes::world(tree, images, place.clone(), warnings)?,

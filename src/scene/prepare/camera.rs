@@ -179,7 +179,10 @@ mod tests {
         let fov_y = 2.0 * (0.5 * 15.2908_f64 / 50.0).atan();
         let projection = ProjectionDesc::Perspective { fov_y, aspect: Some(20.955 / 15.2908) };
         let at = |size: [u32; 2], x: f32, y: f32| {
-            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), &RenderDesc::default(), size, DVec3::ZERO).ray(x, y).ray.d;
+            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), &RenderDesc::default(), size, DVec3::ZERO)
+                .ray(x, y)
+                .ray
+                .d;
             [d.x / -d.z, d.y / -d.z]
         };
         let near = |found: [f32; 2], x: f32, y: f32| {
@@ -195,7 +198,9 @@ mod tests {
     #[test]
     fn parallel_rays_are_shifted_by_the_frame() {
         let projection = ProjectionDesc::Orthographic { half_width: 2.0, half_height: 1.0 };
-        let ray = prepare(&desc(projection, [0.25, -0.5]), &RenderDesc::default(), [400, 200], DVec3::ZERO).ray(200.0, 100.0).ray;
+        let ray = prepare(&desc(projection, [0.25, -0.5]), &RenderDesc::default(), [400, 200], DVec3::ZERO)
+            .ray(200.0, 100.0)
+            .ray;
         assert_eq!((ray.o, ray.d), (Vec3::new(1.0, -1.0, 0.0), Vec3::NEG_Z));
     }
 }

@@ -10,8 +10,7 @@ use crate::desc::graph::{Function, ValueId};
 /// Mix of older files.
 pub fn mix<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let args = ["Fac", "Color1", "Color2"].map(|name| flow.input(at, name));
-    let function =
-        Function::Mix { blend: flow.blend(at), clamp_factor: true, clamp_result: at.node.flag("use_clamp") };
+    let function = Function::Mix { blend: flow.blend(at), clamp_factor: true, clamp_result: at.node.flag("use_clamp") };
     flow.graph.apply(function, &args)
 }
 

@@ -1,8 +1,8 @@
 //! Lamps: emission that is the same in all directions, and how it falls off.
 
+use super::super::light::LampShader;
 use super::closure;
 use super::flow::{At, Flow};
-use super::super::light::LampShader;
 use crate::desc::DecayLaw;
 use crate::desc::graph::ValueId;
 

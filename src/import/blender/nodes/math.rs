@@ -56,7 +56,10 @@ pub fn math<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let args: Vec<ValueId> = (0..at.node.inputs.len().min(3)).map(|i| flow.input_at(at, i)).collect();
     let operation = at.node.text("operation");
     let Some(math) = find(MATH, operation) else {
-        flow.warn(format!("the operation {operation} of the Math node \"{}\" is not supported; 0 is taken", at.node.name));
+        flow.warn(format!(
+            "the operation {operation} of the Math node \"{}\" is not supported; 0 is taken",
+            at.node.name
+        ));
         return flow.graph.number(0.0);
     };
     let value = flow.graph.math(math, &args);
@@ -86,7 +89,9 @@ pub fn vector_math<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId 
         "NORMALIZE" => Function::Normalize(3),
         _ => {
             let name = &at.node.name;
-            flow.warn(format!("the operation {operation} of the Vector Math node \"{name}\" is not supported; 0 is taken"));
+            flow.warn(format!(
+                "the operation {operation} of the Vector Math node \"{name}\" is not supported; 0 is taken"
+            ));
             return flow.graph.number(0.0);
         }
     };

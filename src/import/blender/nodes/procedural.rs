@@ -114,9 +114,8 @@ pub fn brick<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
         squash: number("squash", 1.0),
         squash_frequency: number("squash_frequency", 2.0).max(0.0) as u32,
     };
-    let names = [
-        "Color1", "Color2", "Mortar", "Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height",
-    ];
+    let names =
+        ["Color1", "Color2", "Mortar", "Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height"];
     let args = args(flow, at, names);
     push(flow, Procedural::Brick(brick), args, output != "Color")
 }

@@ -1,7 +1,7 @@
 //! Image textures.
 
-use super::flow::{At, Flow};
 use super::super::image::Look;
+use super::flow::{At, Flow};
 use crate::desc::graph::{Function, Leaf, Math, ValueId};
 use crate::desc::{Filter, Wrap};
 
@@ -81,7 +81,8 @@ fn of_texel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, texel: Option<ValueId>, out
         return if output == "Alpha" { flow.graph.number(1.0) } else { flow.graph.constant([1.0, 0.0, 1.0, 1.0]) };
     };
     let data = flow.images.data(at.node.text("image"));
-    let (alpha_mode, is_data) = data.map_or(("", false), |data| (data.alpha_mode.as_str(), data.colorspace == "Non-Color"));
+    let (alpha_mode, is_data) =
+        data.map_or(("", false), |data| (data.alpha_mode.as_str(), data.colorspace == "Non-Color"));
     if output == "Alpha" {
         return if alpha_mode == "NONE" { flow.graph.number(1.0) } else { flow.graph.place(texel, 3) };
     }

@@ -70,7 +70,10 @@ pub fn output<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: usize) -> ValueId
     match NODES.iter().find(|(name, _)| *name == at.node.r#type) {
         Some((_, make)) => make(flow, at, &socket.id),
         None => {
-            flow.warn(format!("the node \"{}\" ({}) is not supported; its default stands for it", at.node.name, at.node.r#type));
+            flow.warn(format!(
+                "the node \"{}\" ({}) is not supported; its default stands for it",
+                at.node.name, at.node.r#type
+            ));
             flow.graph.constant(socket.value.places())
         }
     }

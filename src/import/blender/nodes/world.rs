@@ -1,9 +1,9 @@
 //! Worlds: a constant radiance, or a lat-long image turned.
 
+use super::super::world::WorldShader;
 use super::closure;
 use super::flow::Flow;
 use super::lamp::emission;
-use super::super::world::WorldShader;
 use crate::desc::graph::{Function, Leaf, Mapping, Math, Op, ValueId};
 use crate::math::{DMat3, DVec3};
 
@@ -30,7 +30,9 @@ pub fn world(flow: &mut Flow<'_, '_>) -> Option<WorldShader> {
     if let Some((texture, turn)) = equirectangular(flow, rest) {
         return Some(WorldShader { radiance: factor, image: Some(flow.images.image_of(texture)), turn });
     }
-    flow.warn("the world's nodes are more than an environment texture times a color, which is not supported yet: black");
+    flow.warn(
+        "the world's nodes are more than an environment texture times a color, which is not supported yet: black",
+    );
     None
 }
 
