@@ -110,7 +110,7 @@ fn placed(blases: &[Arc<Blas>], instances: &[Instance]) -> Vec<Bvh> {
 
 /// All agree bit for bit, and with `any_hit`; the common answer.
 fn shoot(bvhs: &[Bvh], ray: &Ray, mask: u64) -> Option<Hit> {
-    let bits = |hit: &Option<Hit>| hit.map(|h| (h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.triangle));
+    let bits = |hit: &Option<Hit>| hit.map(|h| (h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.primitive));
     let hit = bvhs[0].closest_hit(ray, mask);
     for bvh in bvhs {
         let other = bvh.closest_hit(ray, mask);
@@ -168,7 +168,7 @@ fn check_against_brute_force(mesh: &Mesh, bvhs: &[Bvh], ray: &Ray) -> bool {
         Some(hit) => {
             assert!(hit.t >= 0.0 && hit.t < ray.t_max);
             assert!(f64::from(hit.t) <= nearest * (1.0 + 1e-5) + 1e-6, "{hit:?} behind {nearest} on {ray:?}");
-            let [a, b, c] = mesh.corners(hit.triangle as usize);
+            let [a, b, c] = mesh.corners(hit.primitive as usize);
             let p = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
             let scale = a.abs().max(b.abs()).max(c.abs()).max_element().max(ray.o.abs().max_element());
             if exact([a, b, c], ray).is_some_and(|e| e.facing > 1e-2) {
@@ -317,7 +317,7 @@ fn degenerate_input_neither_hits_nor_disturbs() {
     let mut hits = 0;
     for _ in 0..5000 {
         let ray = Ray::new(rng.vec() * 1.5, rng.dir());
-        let hit = shoot(&bvhs, &ray, 1).map(|h| Hit { triangle: original[h.triangle as usize], ..h });
+        let hit = shoot(&bvhs, &ray, 1).map(|h| Hit { primitive: original[h.primitive as usize], ..h });
         assert_eq!(hit, shoot(&reference, &ray, 1));
         hits += usize::from(hit.is_some());
     }
@@ -366,7 +366,7 @@ fn direction_lengths_scale_t() {
         let s = 2.0_f32.powi(exponent);
         let ray = Ray::new(Vec3::ZERO, Vec3::new(0.5, 0.25, -0.125) * s);
         let hit = shoot(&bvhs, &ray, 1).unwrap();
-        assert_eq!((hit.triangle, hit.u, hit.v, hit.t), (unit.triangle, unit.u, unit.v, unit.t / s));
+        assert_eq!((hit.primitive, hit.u, hit.v, hit.t), (unit.primitive, unit.u, unit.v, unit.t / s));
         assert!(shoot(&bvhs, &Ray { t_max: hit.t * 1.001, ..ray }, 1).is_some());
         assert!(shoot(&bvhs, &Ray { t_max: hit.t * 0.999, ..ray }, 1).is_none());
     }
@@ -383,7 +383,7 @@ fn equal_distances_choose_the_lowest_instance_then_triangle() {
     let bvhs = placed(&[blas], &[Instance { mask: 2, ..instance }, instance, instance, instance]);
     let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::NEG_Z);
     let hit = shoot(&bvhs, &ray, 1).unwrap();
-    assert_eq!((hit.instance, hit.triangle, hit.t), (1, 0, 1.0));
+    assert_eq!((hit.instance, hit.primitive, hit.t), (1, 0, 1.0));
     assert_eq!(shoot(&bvhs, &ray, 3).unwrap().instance, 0);
 }
 
@@ -449,7 +449,7 @@ fn instances_agree_with_the_transformed_mesh() {
             let (a, b) = (shoot(&bvhs, &ray, 1), shoot(&reference, &ray, 1));
             hits += usize::from(b.is_some());
             let same = match (a, b) {
-                (Some(a), Some(b)) => a.triangle == b.triangle && (a.t - b.t).abs() <= 1e-3 * b.t.max(0.1),
+                (Some(a), Some(b)) => a.primitive == b.primitive && (a.t - b.t).abs() <= 1e-3 * b.t.max(0.1),
                 (a, b) => a == b,
             };
             differ += usize::from(!same);

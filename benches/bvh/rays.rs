@@ -70,7 +70,7 @@ fn primary(scene: &Scene) -> Vec<Ray> {
 fn surface_point(scene: &Scene, ray: &Ray, hit: &Hit) -> (Vec3, Vec3) {
     let (mesh, transform) = scene.instances[hit.instance as usize];
     let mesh = &scene.meshes[mesh as usize];
-    let [a, b, c] = mesh.triangles[hit.triangle as usize].map(|v| transform.transform_point3(mesh.points[v as usize]));
+    let [a, b, c] = mesh.triangles[hit.primitive as usize].map(|v| transform.transform_point3(mesh.points[v as usize]));
     let normal = (b - a).cross(c - a).normalize();
     let normal = if normal.dot(ray.d) > 0.0 { -normal } else { normal };
     let n = if normal.is_finite() { Frame::from_z(normal).n } else { -ray.d };

@@ -1,4 +1,5 @@
-//! The lower level: the triangles of one mesh in object space.
+//! The lower level: the triangles of one mesh, or the round cones of one set of strands and balls, in
+//! object space.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::ControlFlow;
@@ -9,26 +10,42 @@ use super::buffer::Buffer;
 use super::build::{self, LeafRule, Primitive};
 use super::node::{BLOCK, Block, Link, Node};
 use super::ray::RaySetup;
+use super::round::{self, Beyond, RoundBlock, RoundRay};
 use super::simd::Simd;
 use super::triangle::{self, Best};
 use super::walk::{Links, walk};
-use crate::math::{Bounds, DVec3, Vec3};
+use crate::math::{Ball, Bounds, DVec3, Vec3};
 
 /// Coordinates beyond this, 2^60, count as not finite: squares of their differences must not
 /// overflow in the triangle test.
-const LARGEST: f32 = (1_u64 << 60) as f32;
+pub(super) const LARGEST: f32 = (1_u64 << 60) as f32;
 
 /// Bounds of a triangle grow by this much of its largest extent, for the rounding of the triangle
 /// test, which may find a hit that lies this far beside the triangle.
 const MARGIN: f32 = 4.0 * f32::EPSILON;
 
-/// The triangles of one mesh in object space, ready to be instanced in a [`super::Bvh`].
+/// The triangles or round cones of one shape in object space, ready to be instanced in a [`super::Bvh`].
 pub struct Blas {
     nodes: Buffer<Node>,
-    blocks: Buffer<Block>,
+    items: Items,
     root: Link,
     bounds: Bounds,
     len: usize,
+}
+
+/// What the leaves hold.
+pub(super) enum Items {
+    /// Triangles.
+    Triangles(Buffer<Block>),
+    /// Round cones.
+    Rounds(Rounds),
+}
+
+/// Round cones, and what continues them.
+pub(super) struct Rounds {
+    blocks: Buffer<RoundBlock>,
+    /// By segment; empty where every ball stands alone.
+    beyond: Buffer<Beyond>,
 }
 
 impl Blas {
@@ -48,30 +65,67 @@ impl Blas {
             .filter_map(|(index, t)| Some(Primitive::new(triangle_bounds(corners(points, *t))?, index as u32)))
             .collect();
         let wide = build::build(&mut primitives, Self::RULE);
-        let mut blocks = Buffer::zeroed(wide.items.len());
-        blocks.par_iter_mut().zip(&wide.items).with_min_len(1024).for_each(|(block, &(first, count))| {
-            let range = &primitives[first as usize..][..count as usize];
-            *block = fill_block(range.iter().map(|p| (p.index, corners(points, triangles[p.index as usize]))));
+        let blocks = blocks(&wide.items, &primitives, |range| {
+            fill_block(range.iter().map(|p| (p.index, corners(points, triangles[p.index as usize]))))
         });
-        Self { nodes: wide.nodes, blocks, root: wide.root, bounds: wide.bounds, len: primitives.len() }
+        let items = Items::Triangles(blocks);
+        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: primitives.len() }
     }
 
-    /// The box of all triangles that can be hit, in object space; empty if there are none.
+    /// Builds the tree over the round cones between `balls`: those of `segments`, which name a ball
+    /// before, both ends, and a ball after (an end itself where the strand ends there); `None` for
+    /// balls that stand alone. All indices must be in range.
+    ///
+    /// Those without size, and those with a coordinate or radius that is not finite or beyond 2^60,
+    /// are left out: they are never hit.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn rounds(balls: &[Ball], segments: Option<&[[u32; 4]]>) -> Self {
+        let ends = |index: usize| match segments {
+            Some(segments) => [1, 2].map(|k| balls[segments[index][k] as usize]),
+            None => [balls[index]; 2],
+        };
+        let count = segments.map_or(balls.len(), <[_]>::len);
+        let mut primitives: Vec<Primitive> = (0..count)
+            .into_par_iter()
+            .filter_map(|index| Some(Primitive::new(round::bounds(ends(index))?, index as u32)))
+            .collect();
+        let wide = build::build(&mut primitives, Self::RULE);
+        let blocks = blocks(&wide.items, &primitives, |range| {
+            RoundBlock::of(range.iter().map(|p| (p.index, ends(p.index as usize))))
+        });
+        let mut beyond = Buffer::zeroed(segments.map_or(0, <[_]>::len));
+        beyond.par_iter_mut().zip(segments.unwrap_or_default()).with_min_len(1024).for_each(
+            |(beyond, &[before, first, last, after]): (&mut Beyond, _)| {
+                let ball = |i: u32, end: u32| if i == end { round::NONE } else { balls[i as usize] };
+                *beyond = [ball(before, first), ball(after, last)];
+            },
+        );
+        let items = Items::Rounds(Rounds { blocks, beyond });
+        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: primitives.len() }
+    }
+
+    /// The box of all that can be hit, in object space; empty if there is nothing.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
     /// Memory held, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.nodes.bytes() + self.blocks.bytes()
+        let items = match &self.items {
+            Items::Triangles(blocks) => blocks.bytes(),
+            Items::Rounds(Rounds { blocks, beyond }) => blocks.bytes() + beyond.bytes(),
+        };
+        size_of::<Self>() + self.nodes.bytes() + items
     }
 
-    /// Number of triangles that can be hit.
+    /// Number of triangles or round cones that can be hit.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// True where no triangle can be hit.
+    /// True where nothing can be hit.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -84,14 +138,23 @@ impl Blas {
             node.planes.as_flattened().iter().for_each(|v| v.to_bits().hash(&mut hasher));
             node.children.iter().for_each(|link| link.0.hash(&mut hasher));
         }
-        for block in self.blocks.iter() {
-            block.vertices.as_flattened().as_flattened().iter().for_each(|v| v.to_bits().hash(&mut hasher));
-            block.triangles.hash(&mut hasher);
+        let mut hash = |values: &[f32], indices: &[u32]| {
+            values.iter().for_each(|v| v.to_bits().hash(&mut hasher));
+            indices.hash(&mut hasher);
+        };
+        match &self.items {
+            Items::Triangles(blocks) => {
+                blocks.iter().for_each(|b| hash(b.vertices.as_flattened().as_flattened(), &b.triangles));
+            }
+            Items::Rounds(rounds) => {
+                rounds.blocks.iter().for_each(|b| hash(b.balls.as_flattened().as_flattened(), &b.segments));
+                rounds.beyond.iter().for_each(|b| hash(b.as_flattened(), &[]));
+            }
         }
         hasher.finish()
     }
 
-    /// Boxes that together hold all triangles, tighter than the one of [`Blas::bounds`].
+    /// Boxes that together hold everything, tighter than the one of [`Blas::bounds`].
     pub(super) fn outline(&self) -> Vec<Bounds> {
         let children = |node: &Node| {
             let node = *node;
@@ -111,18 +174,25 @@ impl Blas {
         boxes
     }
 
+    /// What the leaves hold.
     #[inline(always)]
-    fn links(&self) -> Links<Block> {
-        Links { nodes: self.nodes.as_ptr(), items: self.blocks.as_ptr() }
+    pub(super) fn items(&self) -> &Items {
+        &self.items
     }
 
-    /// Updates `best` with the nearest hit of a ray in object space.
+    /// Updates `best` with the nearest hit of a ray in object space on `blocks`, which are its own.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub(super) unsafe fn closest<S: Simd>(&self, ray: &RaySetup, instance: u32, best: &mut Best) {
-        let tree = self.links();
+    pub(super) unsafe fn closest<S: Simd>(
+        &self,
+        blocks: &Buffer<Block>,
+        ray: &RaySetup,
+        instance: u32,
+        best: &mut Best,
+    ) {
+        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
         let leaf = |best: &mut Best, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
@@ -135,13 +205,13 @@ impl Blas {
         unsafe { walk::<S, _, _>(&tree, self.root, ray, best, |best| best.t, leaf) };
     }
 
-    /// True where a ray in object space hits anything at `0 <= t < t_max`.
+    /// True where a ray in object space hits any of `blocks`, which are its own, at `0 <= t < t_max`.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub(super) unsafe fn any<S: Simd>(&self, ray: &RaySetup, t_max: f32) -> bool {
-        let tree = self.links();
+    pub(super) unsafe fn any<S: Simd>(&self, blocks: &Buffer<Block>, ray: &RaySetup, t_max: f32) -> bool {
+        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
         let mut found = false;
         let leaf = |found: &mut bool, link: Link| {
             let (first, count) = link.items();
@@ -158,6 +228,71 @@ impl Blas {
         unsafe { walk::<S, _, _>(&tree, self.root, ray, &mut found, |_| t_max, leaf) };
         found
     }
+
+    /// As [`Blas::closest`] for round cones; rounding may have moved the ray's origin by `o_err`.
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[inline(always)]
+    pub(super) unsafe fn closest_round<S: Simd>(
+        &self,
+        rounds: &Rounds,
+        ray: &RaySetup,
+        o_err: f32,
+        instance: u32,
+        best: &mut Best,
+    ) {
+        let tree = Links { nodes: self.nodes.as_ptr(), items: rounds.blocks.as_ptr() };
+        let round_ray = RoundRay::new(ray, o_err);
+        let leaf = |best: &mut Best, link: Link| {
+            let (first, count) = link.items();
+            for i in first..first + count {
+                // SAFETY: as above.
+                unsafe { round::closest::<S::F4>(&*tree.items.add(i), &rounds.beyond, &round_ray, instance, best) };
+            }
+            ControlFlow::Continue(())
+        };
+        // SAFETY: as above.
+        unsafe { walk::<S, _, _>(&tree, self.root, ray, best, |best| best.t, leaf) };
+    }
+
+    /// As [`Blas::any`] for round cones.
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[inline(always)]
+    pub(super) unsafe fn any_round<S: Simd>(&self, rounds: &Rounds, ray: &RaySetup, o_err: f32, t_max: f32) -> bool {
+        let tree = Links { nodes: self.nodes.as_ptr(), items: rounds.blocks.as_ptr() };
+        let round_ray = RoundRay::new(ray, o_err);
+        let mut found = false;
+        let leaf = |found: &mut bool, link: Link| {
+            let (first, count) = link.items();
+            for i in first..first + count {
+                // SAFETY: as above.
+                if unsafe { round::any::<S::F4>(&*tree.items.add(i), &rounds.beyond, &round_ray, t_max) } {
+                    *found = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        };
+        // SAFETY: as above.
+        unsafe { walk::<S, _, _>(&tree, self.root, ray, &mut found, |_| t_max, leaf) };
+        found
+    }
+}
+
+/// The blocks of the leaf items `items`, each filled from its primitives.
+fn blocks<B: bytemuck::Zeroable + Copy + Send + Sync>(
+    items: &[(u32, u32)],
+    primitives: &[Primitive],
+    fill: impl Fn(&[Primitive]) -> B + Sync,
+) -> Buffer<B> {
+    let mut blocks = Buffer::zeroed(items.len());
+    blocks.par_iter_mut().zip(items).with_min_len(1024).for_each(|(block, &(first, count))| {
+        *block = fill(&primitives[first as usize..][..count as usize]);
+    });
+    blocks
 }
 
 fn corners(points: &[Vec3], triangle: [u32; 3]) -> [Vec3; 3] {

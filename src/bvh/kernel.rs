@@ -2,8 +2,9 @@
 //! in the hot loop.
 
 use super::Hit;
+use super::blas::{Blas, Rounds};
 use super::isa::Isa;
-use super::ray::{is_plain, rescaled};
+use super::ray::{RaySetup, is_plain, rescaled};
 use super::simd;
 use super::top::Tree;
 use super::triangle::Best;
@@ -16,18 +17,36 @@ pub(super) struct Kernel {
     any: unsafe fn(&Tree, &Ray, u64) -> bool,
 }
 
-/// Compiles both queries for an instruction set.
+/// The queries of round cones for one instruction set. They are called, so that registers and code of
+/// the loop over triangles are as if there were none.
+pub(super) struct RoundCode {
+    pub closest: unsafe fn(&Blas, &Rounds, &RaySetup, f32, u32, &mut Best),
+    pub any: unsafe fn(&Blas, &Rounds, &RaySetup, f32, f32) -> bool,
+}
+
+/// Compiles all queries for an instruction set.
 macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         $(#[target_feature(enable = $features)])?
+        unsafe fn closest_round(blas: &Blas, of: &Rounds, ray: &RaySetup, o_err: f32, instance: u32, best: &mut Best) {
+            // SAFETY: the features are enabled here.
+            unsafe { blas.closest_round::<$simd>(of, ray, o_err, instance, best) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn any_round(blas: &Blas, of: &Rounds, ray: &RaySetup, o_err: f32, t_max: f32) -> bool {
+            // SAFETY: the features are enabled here.
+            unsafe { blas.any_round::<$simd>(of, ray, o_err, t_max) }
+        }
+        static ROUND: RoundCode = RoundCode { closest: closest_round, any: any_round };
+        $(#[target_feature(enable = $features)])?
         unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u64) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { tree.closest::<$simd>(ray, mask) }
+            unsafe { tree.closest::<$simd>(ray, mask, &ROUND) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u64) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { tree.any::<$simd>(ray, mask) }
+            unsafe { tree.any::<$simd>(ray, mask, &ROUND) }
         }
         static $name: Kernel = Kernel { isa: $isa, closest: closest_hit, any: any_hit };
         &$name
@@ -59,8 +78,8 @@ impl Kernel {
             return self.closest(tree, &scaled, mask).map(|hit| Hit { t: hit.t * power, ..hit });
         }
         // SAFETY: only available kernels are handed out.
-        let Best { t, u, v, instance, triangle } = unsafe { (self.closest)(tree, ray, mask) };
-        (triangle != Best::NONE).then_some(Hit { t, u, v, instance, triangle })
+        let Best { t, u, v, instance, primitive } = unsafe { (self.closest)(tree, ray, mask) };
+        (primitive != Best::NONE).then_some(Hit { t, u, v, instance, primitive })
     }
 
     /// See [`super::Bvh::any_hit`].

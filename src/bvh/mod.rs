@@ -1,11 +1,11 @@
 //! The acceleration structure: what does a ray hit?
 //!
-//! Two levels: a [`Blas`] holds the triangles of one mesh in object space, a [`Bvh`] places
-//! instances of them. Both are trees of 8-wide nodes (`node.rs`) built by the surface area
+//! Two levels: a [`Blas`] holds the triangles of one mesh or the round cones of one set of strands and
+//! balls in object space, a [`Bvh`] places instances of them. Both are trees of 8-wide nodes (`node.rs`) built by the surface area
 //! heuristic (`build/`) and walked by code that is compiled per instruction set and chosen at run
 //! time (`kernel.rs`, [`Isa`]); all of them, the scalar one included, give the same bits. The
-//! triangle test is watertight (`triangle.rs`). Spheres, disks and curves would be further kinds of
-//! leaf items beside the blocks of triangles, motion a further kind of node.
+//! triangle test is watertight (`triangle.rs`), round cones are decided in `f64` (`round.rs`). Motion
+//! would be a further kind of node.
 //!
 //! This and the foreign-function files are the only places of `unsafe` in the crate; the interface is safe.
 
@@ -18,6 +18,7 @@ mod isa;
 mod kernel;
 mod node;
 mod ray;
+mod round;
 mod simd;
 mod top;
 mod triangle;
@@ -29,10 +30,10 @@ pub use top::Bvh;
 
 use crate::math::Affine3A;
 
-/// A mesh placed in render space.
+/// A shape placed in render space.
 #[derive(Clone, Copy, Debug)]
 pub struct Instance {
-    /// Index of the mesh in the list given to [`Bvh::build`].
+    /// Index of the shape in the list given to [`Bvh::build`].
     pub blas: u32,
     /// From object to render space.
     pub object_to_render: Affine3A,
@@ -40,17 +41,19 @@ pub struct Instance {
     pub mask: u64,
 }
 
-/// Where a ray meets a triangle.
+/// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance in lengths of the ray's direction.
     pub t: f32,
-    /// Weight of the second vertex: `p = (1 - u - v) p0 + u p1 + v p2`.
+    /// On a triangle the weight of the second vertex: `p = (1 - u - v) p0 + u p1 + v p2`. On a round
+    /// cone, with `v`, what [`crate::math::RoundCone::point`] takes.
     pub u: f32,
     /// Weight of the third vertex.
     pub v: f32,
     /// Index in the list of instances given to [`Bvh::build`].
     pub instance: u32,
-    /// Index in the list of triangles given to [`Blas::build`].
-    pub triangle: u32,
+    /// Index in the list of triangles given to [`Blas::build`], or of segments or balls to
+    /// [`Blas::rounds`].
+    pub primitive: u32,
 }

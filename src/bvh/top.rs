@@ -1,20 +1,20 @@
-//! The upper level: instances of meshes, and the queries.
+//! The upper level: instances of shapes, and the queries.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::blas::Blas;
+use super::blas::{Blas, Items};
 use super::buffer::Buffer;
 use super::build::{self, LeafRule, Primitive};
 use super::isa::Isa;
-use super::kernel::Kernel;
+use super::kernel::{Kernel, RoundCode};
 use super::node::{Link, Node};
 use super::ray::RaySetup;
 use super::simd::Simd;
 use super::triangle::Best;
 use super::walk::{Links, walk};
 use super::{Hit, Instance};
-use crate::math::{Affine3A, Bounds, DAffine3, DMat3, Ray};
+use crate::math::{Affine3A, Bounds, DAffine3, DMat3, Ray, gamma};
 
 /// Relative growth of an instance's box: more than the rounding of its transform and of a ray's.
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
@@ -72,7 +72,7 @@ impl Bvh {
 
     /// The nearest hit at `0 <= t < ray.t_max` on an instance with `instance.mask & mask != 0`.
     ///
-    /// Triangles are hit from both sides. Of hits at equal `t`, the lowest instance, then triangle,
+    /// Surfaces are hit from both sides. Of hits at equal `t`, the lowest instance, then primitive,
     /// wins. A ray that is not finite hits nothing.
     #[inline]
     pub fn closest_hit(&self, ray: &Ray, mask: u64) -> Option<Hit> {
@@ -133,6 +133,14 @@ impl Placed {
         let o = [linear(&ray.o, 0) + t[0], linear(&ray.o, 1) + t[1], linear(&ray.o, 2) + t[2]];
         RaySetup::new(o, [linear(&ray.d, 0), linear(&ray.d, 1), linear(&ray.d, 2)])
     }
+
+    /// How far from a surface, in object space, the origin of a ray in render space may be found though
+    /// it starts there: its own rounding and that of the way to object space.
+    fn origin_error(&self, o: &[f32; 3]) -> f32 {
+        let [x, y, z, t] = &self.render_to_object;
+        let axis = |i: usize| (x[i] * o[0]).abs() + (y[i] * o[1]).abs() + (z[i] * o[2]).abs() + t[i].abs();
+        gamma(8) * axis(0).max(axis(1)).max(axis(2))
+    }
 }
 
 /// The inverse, computed in `f64`; `None` where there is none within the range of `f32`.
@@ -186,7 +194,7 @@ impl Tree {
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn closest<S: Simd>(&self, ray: &Ray, mask: u64) -> Best {
+    pub unsafe fn closest<S: Simd>(&self, ray: &Ray, mask: u64, round: &RoundCode) -> Best {
         let setup = RaySetup::new(ray.o.to_array(), ray.d.to_array());
         let mut best = Best::none(ray.t_max);
         let leaf = |best: &mut Best, link: Link| {
@@ -206,7 +214,13 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    (*placed.blas).closest::<S>(local, placed.id(), best);
+                    let blas = &*placed.blas;
+                    match blas.items() {
+                        Items::Triangles(blocks) => blas.closest::<S>(blocks, local, placed.id(), best),
+                        Items::Rounds(rounds) => {
+                            (round.closest)(blas, rounds, local, placed.origin_error(&setup.o), placed.id(), best);
+                        }
+                    }
                 }
             }
             ControlFlow::Continue(())
@@ -221,7 +235,7 @@ impl Tree {
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn any<S: Simd>(&self, ray: &Ray, mask: u64) -> bool {
+    pub unsafe fn any<S: Simd>(&self, ray: &Ray, mask: u64, round: &RoundCode) -> bool {
         let setup = RaySetup::new(ray.o.to_array(), ray.d.to_array());
         let t_max = ray.t_max;
         let mut found = false;
@@ -242,7 +256,11 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    (*placed.blas).any::<S>(local, t_max)
+                    let blas = &*placed.blas;
+                    match blas.items() {
+                        Items::Triangles(blocks) => blas.any::<S>(blocks, local, t_max),
+                        Items::Rounds(rounds) => (round.any)(blas, rounds, local, placed.origin_error(&setup.o), t_max),
+                    }
                 };
                 if *found {
                     return ControlFlow::Break(());

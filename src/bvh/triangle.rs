@@ -16,7 +16,7 @@ use super::simd::Lanes;
 /// coordinate of a vertex relative to the point: a subtraction, a cross and a dot product.
 const PLANE_ROUNDING: f32 = 3.0 * f32::EPSILON;
 
-/// The nearest hit so far. `triangle` is [`Best::NONE`] as long as there is none, and `t` the end
+/// The nearest hit so far. `primitive` is [`Best::NONE`] as long as there is none, and `t` the end
 /// of the ray then.
 #[derive(Clone, Copy)]
 pub(super) struct Best {
@@ -24,25 +24,25 @@ pub(super) struct Best {
     pub u: f32,
     pub v: f32,
     pub instance: u32,
-    pub triangle: u32,
+    pub primitive: u32,
 }
 
 impl Best {
-    /// No triangle.
+    /// No primitive.
     pub const NONE: u32 = u32::MAX;
 
     /// No hit yet on a ray that ends at `t_max`.
     #[inline(always)]
     pub fn none(t_max: f32) -> Self {
-        Self { t: t_max, u: 0.0, v: 0.0, instance: Self::NONE, triangle: Self::NONE }
+        Self { t: t_max, u: 0.0, v: 0.0, instance: Self::NONE, primitive: Self::NONE }
     }
 
-    /// Of hits at equal `t` the one with the lower instance, then triangle, is kept, whatever the
+    /// Of hits at equal `t` the one with the lower instance, then primitive, is kept, whatever the
     /// order in which they were found.
     #[inline(always)]
-    fn accepts(&self, t: f32, instance: u32, triangle: u32) -> bool {
+    pub fn accepts(&self, t: f32, instance: u32, primitive: u32) -> bool {
         t < self.t
-            || (t == self.t && self.triangle != Self::NONE && (instance, triangle) < (self.instance, self.triangle))
+            || (t == self.t && self.primitive != Self::NONE && (instance, primitive) < (self.instance, self.primitive))
     }
 }
 
@@ -194,9 +194,9 @@ pub(super) unsafe fn closest<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup, ins
         while hits != 0 {
             let i = hits.trailing_zeros() as usize & (BLOCK - 1);
             hits &= hits - 1;
-            let triangle = block.triangles[i];
-            if best.accepts(t[i], instance, triangle) {
-                *best = Best { t: t[i], u: u[i], v: v[i], instance, triangle };
+            let primitive = block.triangles[i];
+            if best.accepts(t[i], instance, primitive) {
+                *best = Best { t: t[i], u: u[i], v: v[i], instance, primitive };
             }
         }
     }
@@ -236,7 +236,7 @@ mod tests {
         // SAFETY: the scalar twin needs nothing.
         unsafe { closest::<<Scalar as Simd>::F4>(&block, &ray, 4, &mut best) };
         // SAFETY: as above.
-        assert_eq!(best.triangle != Best::NONE, unsafe { any::<<Scalar as Simd>::F4>(&block, &ray, t_max) });
+        assert_eq!(best.primitive != Best::NONE, unsafe { any::<<Scalar as Simd>::F4>(&block, &ray, t_max) });
         best
     }
 
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn returns_distance_and_weights_of_the_second_and_third_vertex() {
         let hit = shoot(T, [0.25, 0.5, 0.0], [0.0, 0.0, 2.0], f32::INFINITY);
-        assert_eq!((hit.t, hit.u, hit.v, hit.instance, hit.triangle), (1.0, 0.25, 0.5, 4, 9));
+        assert_eq!((hit.t, hit.u, hit.v, hit.instance, hit.primitive), (1.0, 0.25, 0.5, 4, 9));
         let from_behind = shoot(T, [0.25, 0.5, 4.0], [0.0, 0.0, -1.0], f32::INFINITY);
         assert_eq!((from_behind.t, from_behind.u, from_behind.v), (2.0, 0.25, 0.5));
     }
@@ -253,37 +253,37 @@ mod tests {
     #[test]
     fn respects_the_segment() {
         for (t_max, hits) in [(1.0, false), (1.0_f32.next_up(), true), (0.5, false)] {
-            assert_eq!(shoot(T, [0.25, 0.5, 0.0], [0.0, 0.0, 2.0], t_max).triangle != Best::NONE, hits);
+            assert_eq!(shoot(T, [0.25, 0.5, 0.0], [0.0, 0.0, 2.0], t_max).primitive != Best::NONE, hits);
         }
-        assert_eq!(shoot(T, [0.25, 0.5, 3.0], [0.0, 0.0, 1.0], f32::INFINITY).triangle, Best::NONE);
+        assert_eq!(shoot(T, [0.25, 0.5, 3.0], [0.0, 0.0, 1.0], f32::INFINITY).primitive, Best::NONE);
         let near = shoot(T, [0.25, 0.5, 2.0 - 1e-5], [0.0, 0.0, 1.0], f32::INFINITY);
-        assert_eq!((near.triangle, near.t), (9, 2.0 - (2.0_f32 - 1e-5)));
+        assert_eq!((near.primitive, near.t), (9, 2.0 - (2.0_f32 - 1e-5)));
     }
 
     #[test]
     fn a_ray_that_starts_in_the_plane_leaves_it() {
         for d in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 1e-6], [-0.3, 0.9, -1e-3]] {
-            assert_eq!(shoot(T, [0.25, 0.5, 2.0], d, f32::INFINITY).triangle, Best::NONE);
+            assert_eq!(shoot(T, [0.25, 0.5, 2.0], d, f32::INFINITY).primitive, Best::NONE);
         }
     }
 
     #[test]
     fn vertices_edges_and_tiny_triangles_are_hit() {
         for [x, y] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.25]] {
-            assert_eq!(shoot(T, [x, y, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).triangle, 9);
+            assert_eq!(shoot(T, [x, y, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).primitive, 9);
         }
         // Products of these underflow in f32.
         let tiny = T.map(|p| [p[0] * 1e-30, p[1] * 1e-30, p[2]]);
         let hit = shoot(tiny, [0.25e-30, 0.5e-30, 0.0], [0.0, 0.0, 1.0], f32::INFINITY);
-        assert!(hit.triangle == 9 && (hit.u - 0.25).abs() < 1e-5 && (hit.v - 0.5).abs() < 1e-5);
-        assert_eq!(shoot(tiny, [1e-30, 1e-30, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).triangle, Best::NONE);
+        assert!(hit.primitive == 9 && (hit.u - 0.25).abs() < 1e-5 && (hit.v - 0.5).abs() < 1e-5);
+        assert_eq!(shoot(tiny, [1e-30, 1e-30, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).primitive, Best::NONE);
     }
 
     #[test]
     fn degenerate_triangles_and_edge_on_rays_miss() {
         for t in [[T[0]; 3], [T[0], T[1], T[1]], [[f32::NAN; 3], T[1], T[2]], [[f32::INFINITY; 3], T[1], T[2]]] {
-            assert_eq!(shoot(t, [0.25, 0.0, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).triangle, Best::NONE);
+            assert_eq!(shoot(t, [0.25, 0.0, 0.0], [0.0, 0.0, 1.0], f32::INFINITY).primitive, Best::NONE);
         }
-        assert_eq!(shoot(T, [-1.0, 0.25, 2.0], [1.0, 0.0, 0.0], f32::INFINITY).triangle, Best::NONE);
+        assert_eq!(shoot(T, [-1.0, 0.25, 2.0], [1.0, 0.0, 0.0], f32::INFINITY).primitive, Best::NONE);
     }
 }

@@ -120,6 +120,15 @@ impl Camera {
         }
     }
 
+    /// Where `p` stands in the picture: 0 to 1 from the left and from below.
+    pub fn window(&self, p: Vec3) -> [f32; 2] {
+        match &self.projection {
+            Projection::Perspective(camera) => camera.window(p),
+            Projection::Orthographic(camera) => camera.window(p),
+            Projection::Panorama(camera) => camera.window(p),
+        }
+    }
+
     /// Where it stands.
     pub fn view(&self) -> &View {
         match &self.projection {

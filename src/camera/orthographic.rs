@@ -1,6 +1,7 @@
 //! Parallel rays.
 
 use super::{CameraRay, View};
+use crate::math::Vec3;
 
 /// A camera infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,5 +26,13 @@ impl Orthographic {
         let sy = (1.0 - 2.0 * y / self.size[1]) * self.half_height + self.center[1];
         let ray = view.clipped(view.origin + view.right * sx + view.up * sy, view.forward);
         CameraRay { ray, width: 2.0 * self.half_height / self.size[1], spread: 0.0 }
+    }
+
+    /// See [`super::Camera::window`].
+    pub fn window(&self, p: Vec3) -> [f32; 2] {
+        let (view, p) = (&self.view, p - self.view.origin);
+        let x = (p.dot(view.right) - self.center[0]) / self.half_width;
+        let y = (p.dot(view.up) - self.center[1]) / self.half_height;
+        [0.5 * (x + 1.0), 0.5 * (y + 1.0)]
     }
 }

@@ -1,7 +1,7 @@
 //! All directions: longitude across the picture, latitude up.
 
 use super::{CameraRay, View};
-use crate::math::Ray;
+use crate::math::{Ray, Vec3};
 
 /// Cycles' equirectangular panorama.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,12 +28,20 @@ impl Panorama {
         let spread = (self.latitude[1] - self.latitude[0]).abs() / self.size[1];
         CameraRay { ray, width: spread * view.clip_near, spread }
     }
+
+    /// See [`super::Camera::window`].
+    pub fn window(&self, p: Vec3) -> [f32; 2] {
+        let (view, d) = (&self.view, (p - self.view.origin).normalize_or_zero());
+        let longitude = d.dot(view.right).atan2(d.dot(view.forward));
+        let latitude = d.dot(view.up).clamp(-1.0, 1.0).asin();
+        let share = |[from, to]: [f32; 2], x: f32| if from == to { 0.0 } else { (x - from) / (to - from) };
+        [share(self.longitude, longitude), share(self.latitude, latitude)]
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec3;
     use std::f32::consts::PI;
 
     #[test]
@@ -52,6 +60,8 @@ mod tests {
         assert!((d(150.0, 50.0) - Vec3::X).length() < 1e-6);
         assert!((d(0.0, 50.0) - Vec3::Z).length() < 1e-6);
         assert!((d(37.0, 0.0) - Vec3::Y).length() < 1e-6);
+        let [x, y] = camera.window(camera.ray(20.0, 70.0).ray.at(3.0));
+        assert!((x - 0.1).abs() < 1e-5 && (y - 0.3).abs() < 1e-5);
         let ray = camera.ray(20.0, 70.0).ray;
         assert!((ray.o.length() - 0.5).abs() < 1e-6 && (ray.at(ray.t_max).length() - 10.0).abs() < 1e-5);
     }

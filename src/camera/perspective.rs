@@ -1,6 +1,7 @@
 //! Straight lines through one point.
 
 use super::{CameraRay, View};
+use crate::math::Vec3;
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,12 +29,23 @@ impl Perspective {
         let spread = 2.0 * self.tan_half_y / self.size[1] * d.dot(view.forward);
         CameraRay { ray, width: spread * (ray.o - view.origin).length(), spread }
     }
+
+    /// See [`super::Camera::window`]; what is beside the camera is nowhere.
+    pub fn window(&self, p: Vec3) -> [f32; 2] {
+        let (view, p) = (&self.view, p - self.view.origin);
+        let ahead = p.dot(view.forward);
+        if ahead == 0.0 {
+            return [0.0; 2];
+        }
+        let x = (p.dot(view.right) / ahead - self.center[0]) / self.tan_half_x;
+        let y = (p.dot(view.up) / ahead - self.center[1]) / self.tan_half_y;
+        [0.5 * (x + 1.0), 0.5 * (y + 1.0)]
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec3;
 
     fn camera() -> Perspective {
         let view = View {
@@ -66,6 +78,16 @@ mod tests {
             assert!((ray - same).length() < 1e-6);
         }
         assert!((shifted.view.depth(shifted.ray(7.0, 9.0).ray.o) - 0.5).abs() < 1e-5);
+    }
+
+    #[test]
+    fn points_stand_where_their_rays_come_from() {
+        let camera = Perspective { center: [0.5, -0.25], ..camera() };
+        for (x, y) in [(0.0, 0.0), (100.0, 50.0), (163.0, 21.0)] {
+            let [u, v] = camera.window(camera.ray(x, y).ray.at(3.0));
+            assert!((u - x / 200.0).abs() < 1e-5 && (v - (1.0 - y / 100.0)).abs() < 1e-5, "{u} {v}");
+        }
+        assert_eq!(camera.window(camera.view.origin), [0.0; 2]);
     }
 
     #[test]

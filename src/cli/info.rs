@@ -3,10 +3,11 @@
 mod lights;
 mod values;
 
+use std::collections::HashMap;
 use std::time::Instant;
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use penumbra::desc::{ProjectionDesc, SceneDesc};
+use penumbra::desc::{ProjectionDesc, SceneDesc, ShapeRef};
 use penumbra::error::Warnings;
 use serde_json::{Value, json};
 
@@ -55,17 +56,17 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
 
 /// Everything that both forms of the report say, with at most `most` meshes.
 fn describe(scene: &SceneDesc, warnings: &Warnings, most: usize) -> Value {
-    let triangles = |mesh: u32| scene.meshes[mesh as usize].triangles.len();
-    let mut users = vec![0_u64; scene.meshes.len()];
+    let mut users: HashMap<ShapeRef, u64> = HashMap::new();
     for instance in &scene.instances {
-        users[instance.mesh as usize] += 1;
+        *users.entry(instance.shape).or_default() += 1;
     }
+    let users = |shape: ShapeRef| users.get(&shape).copied().unwrap_or_default();
     let meshes: Vec<Value> = scene
         .meshes
         .iter()
-        .zip(&users)
+        .zip(0..)
         .take(most)
-        .map(|(mesh, users)| {
+        .map(|(mesh, i)| {
             json!({
                 "name": &*mesh.name,
                 "points": mesh.points.len(),
@@ -74,15 +75,31 @@ fn describe(scene: &SceneDesc, warnings: &Warnings, most: usize) -> Value {
                 "uv_sets": mesh.uvs.len(),
                 "tangents": mesh.tangents.is_some(),
                 "colors": mesh.colors.is_some(),
-                "instances": users,
+                "instances": users(ShapeRef::Mesh(i)),
+            })
+        })
+        .collect();
+    let rounds: Vec<Value> = scene
+        .rounds
+        .iter()
+        .zip(0..)
+        .map(|(rounds, i)| {
+            json!({
+                "name": &*rounds.name,
+                "points": rounds.points.len(),
+                "strands": rounds.strands.len(),
+                "uv_sets": rounds.uvs.len(),
+                "colors": rounds.colors.is_some(),
+                "instances": users(ShapeRef::Rounds(i)),
             })
         })
         .collect();
     json!({
         "scene": scene.place.to_string(),
         "triangles": scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>(),
-        "instanced_triangles": scene.instances.iter().map(|i| triangles(i.mesh)).sum::<usize>(),
+        "instanced_triangles": scene.instances.iter().filter_map(|i| scene.mesh(i)).map(|m| m.triangles.len()).sum::<usize>(),
         "meshes": meshes,
+        "rounds": rounds,
         "instances": scene.instances.len(),
         "materials": scene.materials.iter().map(|m| json!({ "name": &*m.name })).collect::<Vec<_>>(),
         "textures": scene.textures.len(),
@@ -101,6 +118,10 @@ fn describe(scene: &SceneDesc, warnings: &Warnings, most: usize) -> Value {
                 }
                 ProjectionDesc::Orthographic { half_width, half_height } => {
                     value["size_m"] = json!([2.0 * half_width, 2.0 * half_height]);
+                }
+                ProjectionDesc::Equirectangular { longitude, latitude } => {
+                    value["longitude_deg"] = json!(longitude.map(f64::to_degrees));
+                    value["latitude_deg"] = json!(latitude.map(f64::to_degrees));
                 }
             }
             value
@@ -143,6 +164,16 @@ fn page(info: &Value, meshes: usize) -> String {
     }
     if meshes > listed.len() {
         line(format!("  and {} meshes more; --json lists all", meshes - listed.len()));
+    }
+    for rounds in list("rounds").iter().take(MOST_MESHES) {
+        let what = match rounds["strands"].as_u64() {
+            Some(0) => "balls".to_string(),
+            _ => format!("points in {} strands", rounds["strands"]),
+        };
+        line(format!("  {}: {} {what}, {} instances", rounds["name"], rounds["points"], rounds["instances"]));
+    }
+    if list("rounds").len() > MOST_MESHES {
+        line(format!("  and {} sets of strands or balls more", list("rounds").len() - MOST_MESHES));
     }
     let names: Vec<String> = list("materials").iter().map(|m| m["name"].to_string()).collect();
     line(format!("  {} materials: {}", names.len(), names.join(", ")));

@@ -1,13 +1,13 @@
 //! Holds a [`SceneDesc`] to its own rules, so that what follows need not.
 
-use super::SceneDesc;
 use super::graph::Op;
+use super::{RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result};
 
 /// Checks every index and length of `scene`.
 ///
 /// # Errors
-/// [`Error::Invalid`] with the place of the first mesh, instance, texture or material that breaks
+/// [`Error::Invalid`] with the place of the first shape, instance, texture or material that breaks
 /// a rule. A door that lets that happen has a bug: bad files are mended, with a warning, at the door.
 pub fn check(scene: &SceneDesc) -> Result<()> {
     for mesh in &scene.meshes {
@@ -22,8 +22,12 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         rule(mesh.attributes.iter().all(|a| attribute_fits(&a.values, points, corners)), "wrong count of attributes")?;
         rule(mesh.material_slots.as_ref().is_none_or(|s| s.len() == mesh.triangles.len()), "wrong count of slots")?;
     }
+    scene.rounds.iter().try_for_each(check_rounds)?;
     for instance in &scene.instances {
-        index(instance.mesh, scene.meshes.len(), &instance.place, "mesh")?;
+        match instance.shape {
+            ShapeRef::Mesh(i) => index(i, scene.meshes.len(), &instance.place, "mesh")?,
+            ShapeRef::Rounds(i) => index(i, scene.rounds.len(), &instance.place, "strands")?,
+        }
         for &material in instance.materials.iter().flatten() {
             index(material, scene.materials.len(), &instance.place, "material")?;
         }
@@ -70,6 +74,20 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         }
     }
     Ok(())
+}
+
+fn check_rounds(rounds: &RoundsDesc) -> Result<()> {
+    let points = rounds.points.len();
+    let rule = |ok: bool, what: &str| if ok { Ok(()) } else { Err(Error::invalid(&rounds.place, what)) };
+    rule(rounds.radii.len() == points, "wrong count of radii")?;
+    rule(rounds.uvs.iter().all(|values| values.len() == points), "wrong count of UVs")?;
+    rule(rounds.colors.as_ref().is_none_or(|values| values.len() == points), "wrong count of colors")?;
+    let ends = || rounds.strands.iter().map(|strand| strand.end);
+    let grow = std::iter::once(0).chain(ends()).zip(ends()).all(|(before, end)| before < end);
+    let fit = ends().last().is_none_or(|end| end as usize == points);
+    rule(grow && fit, "strands and points differ in number")?;
+    let slots = if rounds.strands.is_empty() { points } else { rounds.strands.len() };
+    rule(rounds.material_slots.as_ref().is_none_or(|s| s.len() == slots), "wrong count of slots")
 }
 
 fn attribute_fits<T>(attribute: &super::Attribute<T>, points: usize, corners: usize) -> bool {

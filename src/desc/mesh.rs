@@ -1,4 +1,4 @@
-//! Triangle meshes and their placement, as authored.
+//! Triangle meshes, and the placement of shapes, as authored.
 
 use std::sync::Arc;
 
@@ -78,7 +78,16 @@ pub struct Motion<T> {
     pub value: T,
 }
 
-/// A mesh placed in the world.
+/// Which shape an instance shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShapeRef {
+    /// Index into `SceneDesc::meshes`.
+    Mesh(u32),
+    /// Index into `SceneDesc::rounds`.
+    Rounds(u32),
+}
+
+/// A shape placed in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InstanceDesc {
     /// Name of the object, for Cryptomatte.
@@ -87,8 +96,8 @@ pub struct InstanceDesc {
     pub place: Place,
     /// Name of the asset (topmost parent) that it belongs to, for Cryptomatte.
     pub asset: Arc<str>,
-    /// Index into `SceneDesc::meshes`.
-    pub mesh: u32,
+    /// What is placed.
+    pub shape: ShapeRef,
     /// Object to world.
     pub transform: DAffine3,
     /// The same at other times of the shutter, in the order of time; empty for what does not move.

@@ -14,6 +14,7 @@ mod light;
 mod material;
 mod mesh;
 mod render;
+mod rounds;
 mod texture;
 
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
@@ -26,8 +27,9 @@ pub use material::{
     AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
     SheenDesc, VolumeDesc,
 };
-pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, Visibility};
+pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::RenderDesc;
+pub use rounds::{RoundsDesc, Strand};
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use crate::error::Place;
@@ -41,7 +43,9 @@ pub struct SceneDesc {
     pub cameras: Vec<CameraDesc>,
     /// Meshes; shared by any number of instances.
     pub meshes: Vec<MeshDesc>,
-    /// Meshes placed in the world.
+    /// Strands and balls; shared by any number of instances.
+    pub rounds: Vec<RoundsDesc>,
+    /// Shapes placed in the world.
     pub instances: Vec<InstanceDesc>,
     /// Materials.
     pub materials: Vec<MaterialDesc>,
@@ -59,4 +63,22 @@ pub struct SceneDesc {
     pub variants: Vec<String>,
     /// What the file itself says of the render; the command line comes first.
     pub render: RenderDesc,
+}
+
+impl SceneDesc {
+    /// The mesh that `instance` shows; `None` for another kind of shape.
+    pub fn mesh(&self, instance: &InstanceDesc) -> Option<&MeshDesc> {
+        match instance.shape {
+            ShapeRef::Mesh(i) => self.meshes.get(i as usize),
+            ShapeRef::Rounds(_) => None,
+        }
+    }
+
+    /// The strands or balls that `instance` shows; `None` for another kind of shape.
+    pub fn rounds(&self, instance: &InstanceDesc) -> Option<&RoundsDesc> {
+        match instance.shape {
+            ShapeRef::Rounds(i) => self.rounds.get(i as usize),
+            ShapeRef::Mesh(_) => None,
+        }
+    }
 }

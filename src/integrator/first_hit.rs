@@ -38,8 +38,8 @@ pub fn describe(scene: &Scene, it: &Interaction, frame: &Frame, sample: &mut Pix
         sample.normal = frame.n;
         sample.denoising_normal = Vec3::new(frame.n.dot(view.right), frame.n.dot(view.up), frame.n.dot(view.forward));
         sample.denoising_depth = view.depth(it.p);
-        let mesh = scene.mesh(scene.instance(it.instance));
-        if let Some(uv) = mesh.uv(0, it.triangle, it.barycentrics) {
+        let shape = scene.shape(scene.instance(it.instance));
+        if let Some(uv) = shape.uv(0, it.primitive, it.at) {
             // v grows upwards in Blender's passes and downwards in glTF.
             sample.uv = [uv.x, 1.0 - uv.y, 1.0];
         }

@@ -16,7 +16,7 @@ use crate::film::PixelSample;
 use crate::light::{Emitter, Rules, Shadow};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
+use crate::scene::{Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
 use crate::settings::Settings;
 
 /// Scatterings before roulette begins.
@@ -43,6 +43,8 @@ struct Path {
     vertex: u32,
     /// The last scattering; `None` for rays from the camera.
     last: Option<Scattering>,
+    /// What graphs may ask of it, where they do.
+    state: PathState,
     /// Where `ray` would have begun had it passed no surface since, and how far it has come.
     start: Vec3,
     travelled: f32,
@@ -61,6 +63,7 @@ impl Path {
             media: Media::default(),
             vertex: 0,
             last: None,
+            state: PathState::CAMERA,
             start: ray.o,
             travelled: 0.0,
         }
@@ -176,9 +179,13 @@ fn next_surface(
             return None;
         };
         visit(path, Met::Stretch([path.travelled, path.travelled + hit.t]));
-        let it = scene.interaction(&path.ray, &hit, path.cone);
+        let mut it = scene.interaction(&path.ray, &hit, path.cone);
         path.vertex += 1;
         path.travelled += hit.t;
+        if scene.effects.light_path {
+            it.path = PathState { length: path.travelled, ..path.state };
+            path.state.transparent = path.state.transparent.saturating_add(1);
+        }
         if scene.effects.absorption {
             path.beta *= transmitted(&path.media, hit.t);
         }
@@ -186,6 +193,7 @@ fn next_surface(
         let opacity = if scene.effects.cutouts { scene.opacity(&it) } else { 1.0 };
         visit(path, Met::Surface(&it, opacity));
         if opacity == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < opacity {
+            path.state.transparent = it.path.transparent;
             return Some(it);
         }
         path.ray = it.continued(&path.ray, hit.t);
@@ -314,7 +322,9 @@ fn scatter(
         // A sample stands for the solid angle 1/pdf; textures seen by it need no finer detail.
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
+    path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
     let last = Scattering {
+        state: path.state,
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
         light_samples,
@@ -358,6 +368,15 @@ fn scatter(
         _ => 1.0,
     };
     !path.beta.is_black()
+}
+
+/// What graphs call a ray from a lobe of this class.
+fn kind_of(lobe: Lobe) -> RayKind {
+    match lobe {
+        Lobe::Diffuse => RayKind::Diffuse,
+        Lobe::Glossy => RayKind::Glossy,
+        Lobe::Transmission => RayKind::Transmission,
+    }
 }
 
 /// Russian roulette by the throughput; false where the path ends.

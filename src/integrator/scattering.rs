@@ -4,13 +4,15 @@ use crate::bsdf::ByLobe;
 use crate::light::{EmitterHit, Receiver, Seen};
 use crate::math::{Rgb, Vec3};
 use crate::sampling::power_heuristic;
-use crate::scene::Scene;
+use crate::scene::{PathState, Scene};
 
 /// A scattering that a ray comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct Scattering {
     /// Where.
     pub from: Receiver,
+    /// What graphs may ask of the path that leaves it.
+    pub state: PathState,
     /// Density of the ray's direction, infinite for a delta.
     pub pdf: f32,
     /// Light samples that were taken there.

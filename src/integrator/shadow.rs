@@ -8,7 +8,7 @@
 use super::scattering::Scattering;
 use crate::light::{Emitter, EmitterHit, Rules, Shadow};
 use crate::math::{Ray, Rgb};
-use crate::scene::{RayCone, Scene, mask};
+use crate::scene::{PathState, RayCone, Scene, mask};
 
 /// Triangles of emissive objects that one ray may pass before the rest is left out.
 const MAX_EMITTERS: u32 = 1024;
@@ -63,7 +63,10 @@ pub fn emitters_along(
     for _ in 0..MAX_EMITTERS {
         let Some(hit) = scene.closest_hit(&rest, mask::EMITTER) else { break };
         travelled += hit.t;
-        let it = scene.interaction(&rest, &hit, cone);
+        let mut it = scene.interaction(&rest, &hit, cone);
+        if scene.effects.light_path {
+            it.path = PathState { length: travelled, ..last.state };
+        }
         cone.width = cone.at(hit.t);
         let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
         if asked(rules) {
@@ -79,6 +82,6 @@ pub fn mesh_weight(scene: &Scene, last: &Scattering, it: &crate::scene::Interact
     let Some(light) = scene.instance(it.instance).light else { return 1.0 };
     let wi = -it.wo;
     let dist = (it.p - last.from.p).dot(wi);
-    let hit = EmitterHit { dist, ng: it.ng, triangle: it.triangle, uv: it.barycentrics };
+    let hit = EmitterHit { dist, ng: it.ng, triangle: it.primitive, uv: it.at };
     last.mis_weight(scene, light, wi, Some(&hit))
 }

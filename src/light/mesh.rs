@@ -8,10 +8,10 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::bounds::Asked;
+use super::placed::Placed;
 use super::tree::refined;
 use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
-use crate::math::{Affine3A, Bounds, DVec3, Mat3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
+use crate::math::{Affine3A, Bounds, DVec3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
 use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
 use crate::shape::Mesh;
 
@@ -41,19 +41,6 @@ pub struct MeshEmitters {
 pub struct MeshLight {
     emitters: Arc<MeshEmitters>,
     placed: Arc<Placed>,
-}
-
-/// An instance of [`MeshEmitters`].
-#[derive(Debug)]
-struct Placed {
-    to_render: Affine3A,
-    to_mesh: Affine3A,
-    /// Carries the normal of a plane to mesh space.
-    plane_to_mesh: Mat3,
-    bounds: LightBounds,
-    /// Irradiance in render space per irradiance in mesh space: 1 unless the scale is not the same along
-    /// all axes.
-    importance_scale: f32,
 }
 
 /// A triangle in render space.
@@ -127,28 +114,7 @@ fn triangle_bounds(p: [Vec3; 3], mean: Rgb) -> Option<LightBounds> {
 impl MeshLight {
     /// The light of `emitters` placed by `to_render`; `None` where that can't be undone.
     pub fn new(emitters: Arc<MeshEmitters>, to_render: Affine3A) -> Option<Self> {
-        let in_f64 = |v: crate::math::Vec3A| Vec3::from(v).as_dvec3();
-        let m = crate::math::DMat3::from_cols(
-            in_f64(to_render.matrix3.x_axis),
-            in_f64(to_render.matrix3.y_axis),
-            in_f64(to_render.matrix3.z_axis),
-        );
-        let inverse = m.inverse();
-        let to_mesh =
-            Affine3A::from_mat3_translation(inverse.as_mat3(), (inverse * -in_f64(to_render.translation)).as_vec3());
-        if !to_mesh.is_finite() {
-            return None;
-        }
-        let bounds = placed_bounds(&emitters.tree, &to_render, m);
-        let uniform = m.determinant().abs().powf(2.0 / 3.0);
-        let area = f64::from(bounds.intensity) / f64::from(emitters.tree.bounds().intensity);
-        let placed = Placed {
-            to_render,
-            to_mesh,
-            plane_to_mesh: m.transpose().as_mat3(),
-            bounds,
-            importance_scale: (area / uniform) as f32,
-        };
+        let placed = Placed::new(&emitters.tree, to_render)?;
         Some(Self { emitters, placed: Arc::new(placed) })
     }
 
@@ -162,14 +128,6 @@ impl MeshLight {
         self.triangle(index).p
     }
 
-    /// The receiver in mesh space.
-    fn asked(&self, at: &Receiver) -> Asked {
-        let (p, p_err) = place_point(&self.placed.to_mesh, at.p, Vec3::ZERO);
-        // In f64, where the plane of a huge or tiny mesh stays in range.
-        let n = at.n.map(|n| (self.placed.plane_to_mesh * n).as_dvec3().normalize_or_zero().as_vec3());
-        Asked::new(p, n, p_err)
-    }
-
     fn triangle(&self, index: u32) -> Triangle {
         // Blending the corners rounds as `Mesh::point` does.
         let place = |p: Vec3| place_point(&self.placed.to_render, p, p.abs() * gamma(7));
@@ -178,42 +136,6 @@ impl MeshLight {
         let p = corners.map(|(p, _)| p);
         let cross = (p[1] - p[0]).as_dvec3().cross((p[2] - p[0]).as_dvec3());
         Triangle { p, p_err, cross }
-    }
-}
-
-/// Bounds in render space of the tree of a mesh placed by `to_render`, whose linear part is `m`.
-fn placed_bounds(tree: &LightTree, to_render: &Affine3A, m: crate::math::DMat3) -> LightBounds {
-    let of_mesh = tree.bounds();
-    let mut bounds = Bounds::EMPTY;
-    for corner in tree.boxes().flat_map(Bounds::corners) {
-        let (p, p_err) = place_point(to_render, corner, Vec3::ZERO);
-        bounds = bounds.with_point(p - p_err).with_point(p + p_err);
-    }
-    // Rotation and uniform scale carry a cone as it is. Else normals go by the cofactors N of m. For unit x and y the sine of the angle between Nx and Ny is
-    // |N'(x × y)| / (|Nx| |Ny|), N' the cofactors of N: it grows by |N'| / σ² at most, where σ, the
-    // smallest factor of any length under N, is |det m| / |m| or more.
-    let det = m.determinant().abs();
-    let cofactors = m.inverse().transpose() * det;
-    let norm = |m: crate::math::DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
-    let scale = det.powf(2.0 / 3.0);
-    let similar = norm(m.transpose() * m - crate::math::DMat3::from_diagonal(DVec3::splat(scale))) < 1e-6 * scale;
-    let growth = norm(m).powi(3) / det;
-    let cos = f64::from(of_mesh.cos_normals);
-    let sin = growth * (1.0 - cos * cos).max(0.0).sqrt();
-    let cos = match () {
-        () if similar => (cos - 1e-5).max(-1.0),
-        () if cos > 0.0 && sin < 0.7 => (1.0 - sin * sin).sqrt() - 1e-6,
-        () => -1.0,
-    };
-    let axis = cofactors * of_mesh.axis.as_dvec3();
-    let area = if cos > 0.5 { axis.length() } else { scale };
-    let intensity = (f64::from(of_mesh.intensity) * area).clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
-    LightBounds {
-        bounds,
-        axis: axis.normalize_or(DVec3::Z).as_vec3(),
-        cos_normals: cos as f32,
-        intensity: intensity as f32,
-        ..*of_mesh
     }
 }
 
@@ -258,7 +180,7 @@ impl Triangle {
 
 impl Emitter for MeshLight {
     fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let asked = self.asked(at);
+        let asked = self.placed.asked(at);
         let tree = &self.emitters.tree;
         // A strip of the square for each triangle: its points are spread as well as all of them, which
         // those picked by a number that is independent of the square would not be.
@@ -286,7 +208,7 @@ impl Emitter for MeshLight {
         };
         let [_, b1, b2] = barycentrics.map(|b| b as f32);
         let pdf = (density * f64::from(chosen.pmf)) as f32;
-        let li = self.emitters.emission.radiance(index, [b1, b2]);
+        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
@@ -315,7 +237,7 @@ impl Emitter for MeshLight {
         if !density.is_finite() {
             return 0.0;
         }
-        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&self.asked(at), item))) as f32;
+        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&self.placed.asked(at), item))) as f32;
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
@@ -324,7 +246,7 @@ impl Emitter for MeshLight {
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
-        self.emitters.tree.weigh(&self.asked(at)).sum * self.placed.importance_scale
+        self.placed.importance(&self.emitters.tree, at)
     }
 
     fn power(&self, _scene: Bounds) -> f32 {

@@ -13,9 +13,11 @@ mod dome;
 mod emission;
 mod flat;
 mod mesh;
+mod placed;
 mod point;
 mod profile;
 mod rect;
+mod rounds;
 mod rules;
 mod select;
 mod sphere;
@@ -34,6 +36,7 @@ pub use mesh::{MeshEmitters, MeshLight};
 pub use point::Point;
 pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
 pub use rect::Rect;
+pub use rounds::{RoundEmitters, RoundLight};
 pub use rules::{Light, Rules, Seen, Shadow};
 pub use select::LightSet;
 pub use sphere::Sphere;
@@ -81,17 +84,18 @@ pub struct EmitterHit {
     pub dist: f32,
     /// Geometric normal there, unit.
     pub ng: Vec3,
-    /// Which triangle of a mesh.
+    /// Which triangle of a mesh, or segment of strands.
     pub triangle: u32,
-    /// Where on the emitter: barycentrics of a mesh's triangle, texture coordinates of a lamp.
+    /// Where on the emitter: barycentrics of a mesh's triangle, coordinates on a round cone, texture
+    /// coordinates of a lamp.
     pub uv: [f32; 2],
 }
 
 /// What the engine asks of a light. Points and directions are in render space.
 ///
 /// Emitters are of three kinds: *lamps* have a shape of their own, which a ray meets by
-/// [`Emitter::hit`]; *background* lights are infinitely far away; a *mesh* light's triangles are those
-/// of an object in the scene. Lamps never stop light.
+/// [`Emitter::hit`]; *background* lights are infinitely far away; a *mesh* light's triangles, or a *round*
+/// light's segments, are those of an object in the scene. Lamps never stop light.
 pub trait Emitter {
     /// Chooses a point of the light as seen from `at`, by one number and a point. `None` where the
     /// point chosen sends nothing.
@@ -108,7 +112,7 @@ pub trait Emitter {
     }
 
     /// Radiance that a ray along `wi` gets from a lamp that it has met at `hit`, or from a background
-    /// light (`None`). Black for mesh lights, whose emission is the surface's.
+    /// light (`None`). Black for mesh and round lights, whose emission is the surface's.
     fn le(&self, _wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
         Rgb::BLACK
     }
@@ -184,13 +188,14 @@ macro_rules! emitters {
 emitters!(
     Point, // a delta
     Sphere, Cylinder, Rect, Disk, // lamps
-    Distant, Dome, MeshLight,
+    Distant, Dome, MeshLight, RoundLight,
 );
 
 impl AnyEmitter {
     /// True for a light with a shape of its own, which rays find by [`Emitter::hit`] alone.
     pub fn is_lamp(&self) -> bool {
-        !matches!(self, Self::Point(_) | Self::Distant(_) | Self::Dome(_) | Self::MeshLight(_))
+        use AnyEmitter as E;
+        !matches!(self, E::Point(_) | E::Distant(_) | E::Dome(_) | E::MeshLight(_) | E::RoundLight(_))
     }
 }
 

@@ -7,6 +7,7 @@ mod bounds;
 mod frame;
 mod ray;
 mod rgb;
+mod round;
 mod scalar;
 mod transform;
 
@@ -15,5 +16,6 @@ pub use frame::{Frame, orthonormal_pair};
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;
+pub use round::{Ball, Foot, RoundCone, RoundPoint, center_of, share_of};
 pub use scalar::{ONE_MINUS_EPSILON, gamma, safe_acos, safe_sqrt, sqr};
 pub use transform::place_point;

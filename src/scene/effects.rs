@@ -3,6 +3,7 @@
 //! Absent effects build nothing and cast nothing. Every test of these flags stands at a coarse
 //! point: per pixel, per hit or per bounce.
 
+use crate::desc::graph::{Leaf, Op};
 use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
@@ -16,6 +17,8 @@ pub struct Effects {
     pub indirect: bool,
     /// Some surface lets light pass unscattered: cut-outs and blends.
     pub cutouts: bool,
+    /// Some graph asks which path a ray is part of.
+    pub light_path: bool,
     /// Some surface is a transmissive solid that absorbs.
     pub absorption: bool,
     /// Baked occlusion maps are applied.
@@ -66,6 +69,7 @@ impl Effects {
         Self {
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| !is_opaque(scene, m)),
+            light_path: any(&asks_path),
             absorption: any(&absorbs),
             lamps,
             emissive: emissive || unlit,
@@ -83,6 +87,7 @@ impl Effects {
             light: passes.needs_light(),
             indirect: passes.needs_indirect(),
             cutouts: true,
+            light_path: true,
             absorption: true,
             occlusion_maps: true,
             ao: passes.needs_ao(),
@@ -106,7 +111,11 @@ fn has_own_shadow(links: &LightLinks) -> bool {
 }
 
 pub(super) fn emits(material: &MaterialDesc) -> bool {
-    !material.unlit && material.emission_strength != 0.0 && material.emission.factor.iter().any(|&c| c != 0.0)
+    let known = material.emission.graph.and_then(|value| material.graph.known(value));
+    !material.unlit
+        && material.emission_strength != 0.0
+        && material.emission.factor.iter().any(|&c| c != 0.0)
+        && known.is_none_or(|[r, g, b, _]| r > 0.0 || g > 0.0 || b > 0.0)
 }
 
 /// True where the material's opacity is 1 everywhere.
@@ -116,19 +125,38 @@ pub(super) fn is_opaque(scene: &SceneDesc, material: &MaterialDesc) -> bool {
         let image = scene.textures.get(texture.texture as usize).and_then(|t| scene.images.get(t.image as usize));
         image.is_some_and(|image| matches!(image.channels, 2 | 4))
     });
-    match material.alpha_mode {
-        AlphaMode::Opaque => true,
-        AlphaMode::Mask { cutoff } => !textured && alpha.factor >= cutoff && !has_vertex_alpha(scene),
-        AlphaMode::Blend => !textured && alpha.factor >= 1.0 && !has_vertex_alpha(scene),
+    let known = match alpha.graph {
+        Some(value) => material.graph.known(value).map(|value| value[0]),
+        None => Some(1.0),
+    };
+    match known {
+        Some(known) if !textured => is_opaque_at(scene, material.alpha_mode, alpha.factor * known),
+        _ => material.alpha_mode == AlphaMode::Opaque,
     }
+}
+
+/// True where opacity is 1 for an alpha of `alpha` everywhere.
+pub(super) fn is_opaque_at(scene: &SceneDesc, mode: AlphaMode, alpha: f64) -> bool {
+    match mode {
+        AlphaMode::Opaque => true,
+        AlphaMode::Mask { cutoff } => alpha >= cutoff && !has_vertex_alpha(scene),
+        AlphaMode::Blend => alpha >= 1.0 && !has_vertex_alpha(scene),
+    }
+}
+
+/// True where what the material does goes by the path that a ray is part of.
+fn asks_path(material: &MaterialDesc) -> bool {
+    let needed = material.graph.needed(material.graph_values());
+    material.graph.ops().iter().zip(needed).any(|(op, needed)| needed && matches!(op, Op::Leaf(Leaf::Path(_))))
 }
 
 fn has_vertex_alpha(scene: &SceneDesc) -> bool {
     use crate::desc::Attribute::{Corner, Point};
-    let of_meshes = |colors: &crate::desc::Attribute<[f32; 4]>| match colors {
-        Point(values) | Corner(values) => values.iter().any(|c| c[3] < 1.0),
-    };
-    scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).any(of_meshes)
+    let of_meshes = scene.meshes.iter().filter_map(|mesh| mesh.colors.as_ref()).map(|colors| match colors {
+        Point(values) | Corner(values) => values,
+    });
+    let of_rounds = scene.rounds.iter().filter_map(|rounds| rounds.colors.as_ref());
+    of_meshes.chain(of_rounds).flatten().any(|c| c[3] < 1.0)
         || scene.instances.iter().filter_map(|instance| instance.color).any(|c| c[3] < 1.0)
 }
 

@@ -1,6 +1,6 @@
 //! A camera for scenes that have none, and the picture's size for those that say nothing.
 
-use crate::desc::{CameraDesc, ProjectionDesc, SceneDesc};
+use crate::desc::{CameraDesc, MeshDesc, ProjectionDesc, RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::Place;
 use crate::math::{DAffine3, DVec3};
 
@@ -9,16 +9,22 @@ const FOV_Y: f64 = 0.471;
 
 /// Box of everything that is placed, in the world; `None` where there is nothing.
 pub fn world_bounds(scene: &SceneDesc) -> Option<(DVec3, DVec3)> {
-    let boxes: Vec<Option<(DVec3, DVec3)>> = scene
-        .meshes
-        .iter()
-        .map(|mesh| {
-            let points = mesh.triangles.iter().flatten().map(|&i| mesh.points[i as usize]);
-            union(points.map(|p| DVec3::from(p.map(f64::from))).map(|p| (p, p)))
-        })
-        .collect();
+    let point = |p: [f32; 3]| DVec3::from(p.map(f64::from));
+    let of_mesh = |mesh: &MeshDesc| {
+        let points = mesh.triangles.iter().flatten().map(|&i| mesh.points[i as usize]);
+        union(points.map(point).map(|p| (p, p)))
+    };
+    let of_rounds = |rounds: &RoundsDesc| {
+        let balls = rounds.points.iter().zip(&rounds.radii);
+        union(balls.map(|(&p, &r)| (point(p) - f64::from(r), point(p) + f64::from(r))))
+    };
+    let meshes: Vec<_> = scene.meshes.iter().map(of_mesh).collect();
+    let rounds: Vec<_> = scene.rounds.iter().map(of_rounds).collect();
     union(scene.instances.iter().filter_map(|instance| {
-        let (min, max) = boxes[instance.mesh as usize]?;
+        let (min, max) = match instance.shape {
+            ShapeRef::Mesh(i) => meshes[i as usize]?,
+            ShapeRef::Rounds(i) => rounds[i as usize]?,
+        };
         let corners = (0..8).map(|i| {
             let pick = |axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
             instance.transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
@@ -71,7 +77,7 @@ pub fn framing_camera(scene: &SceneDesc, aspect: f64) -> CameraDesc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, Visibility};
+    use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, Visibility};
 
     #[test]
     fn every_corner_is_in_the_picture() {
@@ -84,7 +90,7 @@ mod tests {
             name: "a".into(),
             place: Place::default(),
             asset: "a".into(),
-            mesh: 0,
+            shape: ShapeRef::Mesh(0),
             transform: DAffine3::from_translation(DVec3::new(1e5, 0.0, 0.0)),
             motion: Vec::new(),
             materials: vec![],

@@ -1,7 +1,8 @@
-//! A mesh placed in render space.
+//! A shape placed in render space.
 
 use crate::light::Rules;
-use crate::math::{Affine3A, Mat3A, Vec3, place_point};
+use crate::math::{Affine3A, Mat3A};
+use crate::shape::Placement;
 
 /// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
 pub mod mask {
@@ -49,12 +50,12 @@ pub mod mask {
     }
 }
 
-/// A mesh placed in render space.
+/// A shape placed in render space.
 #[derive(Clone, Debug)]
 pub struct Instance {
-    /// Index of the mesh.
-    pub mesh: u32,
-    /// Mesh space (object space less the mesh's centre) to render space.
+    /// Index of the shape.
+    pub shape: u32,
+    /// The shape's space (object space less its centre) to render space.
     pub object_to_render: Affine3A,
     /// Inverse transpose of its linear part: carries normals.
     pub normal_to_render: Mat3A,
@@ -62,9 +63,9 @@ pub struct Instance {
     pub mirrored: bool,
     /// Material of each slot.
     pub materials: Box<[u32]>,
-    /// Linear, straight alpha; in place of the vertex colours that its mesh lacks.
+    /// Linear, straight alpha; in place of the vertex colours that its shape lacks.
     pub color: Option<[f32; 4]>,
-    /// Index of the light that its emissive triangles form.
+    /// Index of the light that its emissive primitives form.
     pub light: Option<u32>,
     /// Its class among the receivers that light linking tells apart.
     pub receiver_class: u16,
@@ -78,8 +79,8 @@ impl Instance {
         self.materials[slot.min(self.materials.len() - 1)]
     }
 
-    /// `p` in render space, with the bound of its error grown by what the transform adds.
-    pub fn point(&self, p: Vec3, p_err: Vec3) -> (Vec3, Vec3) {
-        place_point(&self.object_to_render, p, p_err)
+    /// Where its shape stands.
+    pub fn placement(&self) -> Placement<'_> {
+        Placement { transform: &self.object_to_render, normals: &self.normal_to_render, mirrored: self.mirrored }
     }
 }

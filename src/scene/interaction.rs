@@ -1,8 +1,9 @@
 //! A point where a ray meets a surface.
 
-use super::{RayCone, Scene};
+use super::{Instance, PathState, RayCone, Scene};
 use crate::bvh::Hit;
-use crate::math::{Frame, Ray, Vec3, sqr};
+use crate::math::{DVec3, Frame, Ray, Vec3, sqr};
+use crate::shape::{Shape, SurfaceGeometry};
 
 /// Geometry of a hit in render space. Materials are evaluated from it, as far as they are needed.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +12,7 @@ pub struct Interaction {
     pub p: Vec3,
     /// Half-width of the box in which rounding has left `p`.
     pub p_err: Vec3,
-    /// Unit geometric normal, outward as wound.
+    /// Unit geometric normal, outward (of a mesh as wound).
     pub ng: Vec3,
     /// Unit shading normal on the side of `ng`, before normal maps.
     pub ns: Vec3,
@@ -21,63 +22,74 @@ pub struct Interaction {
     pub front: bool,
     /// Which instance.
     pub instance: u32,
-    /// Which triangle of its mesh.
-    pub triangle: u32,
+    /// Which primitive of its shape.
+    pub primitive: u32,
     /// Which material.
     pub material: u32,
-    /// Barycentrics of the second and third corner.
-    pub barycentrics: [f32; 2],
+    /// Where on that: on a triangle the barycentrics of the second and third corner.
+    pub at: [f32; 2],
     /// Width of the ray's cone here, stretched by the slant of the surface.
     pub footprint: f32,
-    /// Twice the triangle's area in render space.
-    pub double_area: f32,
+    /// The primitive's size in render space; see [`crate::shape::SurfaceGeometry::size`].
+    pub size: f32,
+    /// The path that the ray is part of, where [`super::Effects::light_path`] asks for it.
+    pub path: PathState,
 }
 
 impl Scene {
     /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
     pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
         let instance = &self.instances[hit.instance as usize];
-        let mesh = self.mesh(instance);
-        let barycentrics = [hit.u, hit.v];
-        let local = mesh.point(hit.triangle, barycentrics);
-        let (p, p_err) = instance.point(local.p, local.p_err);
-        // In f64, where the squares of neither huge nor tiny triangles leave the range.
-        let [e1, e2] = local.edges.map(|e| instance.object_to_render.transform_vector3(e).as_dvec3());
-        let cross = e1.cross(e2);
-        let double_area = cross.length();
-        let wo = -ray.d;
-        let wound = if instance.mirrored { -cross } else { cross };
-        let ng = if double_area > 0.0 { (wound / double_area).as_vec3() } else { wo };
-        let double_area = double_area as f32;
-        let ns = mesh.normal(hit.triangle, barycentrics).map_or(ng, |n| {
-            let n = Vec3::from(instance.normal_to_render * crate::math::Vec3A::from(n)).normalize_or(ng);
+        let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d);
+        let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
+        Interaction { instance: hit.instance, footprint, ..it }
+    }
+}
+
+impl Interaction {
+    /// A point of `primitive`, seen from `wo` by a ray without width. The index of its instance, here 0, is
+    /// the caller's.
+    #[inline(always)]
+    pub(super) fn on(shape: &Shape, instance: &Instance, primitive: u32, at: [f32; 2], wo: Vec3) -> Self {
+        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, instance.placement());
+        let ng = ng.unwrap_or(wo);
+        let ns = ns.map_or(ng, |n| {
+            let n = n.normalize_or(ng);
             // Authored normals that point inward would turn the surface inside out.
             if n.dot(ng) < 0.0 { -n } else { n }
         });
-        let cos = wo.dot(ng);
-        Interaction {
+        Self {
             p,
             p_err,
             ng,
             ns,
             wo,
-            front: cos >= 0.0,
-            instance: hit.instance,
-            triangle: hit.triangle,
-            material: instance.material(mesh.slot(hit.triangle)),
-            barycentrics,
-            footprint: cone.at(hit.t) / cos.abs().max(0.05),
-            double_area,
+            front: wo.dot(ng) >= 0.0,
+            instance: 0,
+            primitive,
+            material: instance.material(shape.slot(primitive)),
+            at,
+            footprint: 0.0,
+            size,
+            path: PathState::CAMERA,
         }
     }
 
+    /// Width of the footprint in units of UV set `set`.
+    pub(super) fn uv_footprint(&self, shape: &Shape, set: u32) -> f32 {
+        let uv_size = shape.uv_size(set, self.primitive);
+        if self.size > 0.0 { self.footprint * (uv_size / self.size).sqrt() } else { 0.0 }
+    }
+}
+
+impl Scene {
     /// The shading frame on the side of `wo`, normal map applied, x along the tangent where there
     /// is one.
     pub fn shading_frame(&self, it: &Interaction) -> Frame {
         let material = &self.materials[it.material as usize];
         let instance = &self.instances[it.instance as usize];
         let mut n = it.ns;
-        let tangent = mesh_tangent(self, it);
+        let tangent = tangent_at(self, it);
         if let Some(map) = &material.normal
             && let Some((tangent, sign)) = tangent
         {
@@ -90,6 +102,10 @@ impl Scene {
         if !it.front {
             n = -n;
         }
+        if let Some(program) = material.programs.as_ref().and_then(|programs| programs.normal.as_ref()) {
+            let [x, y, z, _] = self.spot(it).run(program)[0];
+            n = DVec3::new(x, y, z).as_vec3().normalize_or(n);
+        }
         let n = facing(n, if it.front { it.ng } else { -it.ng }, it.wo);
         match tangent {
             Some((tangent, _)) => Frame::from_z_and_tangent(n, tangent),
@@ -98,9 +114,9 @@ impl Scene {
     }
 }
 
-fn mesh_tangent(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
+fn tangent_at(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
     let instance = &scene.instances[it.instance as usize];
-    let (tangent, sign) = scene.mesh(instance).tangent(it.triangle, it.barycentrics)?;
+    let (tangent, sign) = scene.shape(instance).tangent(it.primitive, it.at)?;
     Some((instance.object_to_render.transform_vector3(tangent), sign))
 }
 

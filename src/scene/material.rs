@@ -1,26 +1,64 @@
-//! Materials as they are traced: constants and texture lookups, evaluated at a point.
+//! Materials as they are traced: constants, texture lookups and values of graphs, evaluated at a point.
 
+use std::sync::Arc;
+
+use super::spot::{Around, MOST_OUTPUTS, Spot};
 use super::{Interaction, Scene};
 use crate::bsdf::Surface;
+use crate::desc::graph::Value;
 use crate::math::Rgb;
 use crate::texture::TextureRef;
+use crate::texture::graph::Program;
 
-/// A colour: `factor × texture`.
+/// What an input varies by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Varying {
+    /// Nothing.
+    No,
+    /// Index into `Material::inputs`, and the channel for a number.
+    Texture(u8, u8),
+    /// Index of a value of the program that answers for the input.
+    Graph(u8),
+}
+
+/// A colour: `factor × what varies`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorInput {
     /// Constant part.
     pub factor: Rgb,
-    /// Index into `Material::inputs`.
-    pub texture: Option<u8>,
+    /// The other.
+    pub varying: Varying,
 }
 
-/// A number: `factor × texture[channel]`.
+/// A number: `factor × what varies`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarInput {
     /// Constant part.
     pub factor: f32,
-    /// Index into `Material::inputs`, and the channel.
-    pub texture: Option<(u8, u8)>,
+    /// The other.
+    pub varying: Varying,
+}
+
+/// Compiled graphs of a material, one for each question that is asked of it.
+#[derive(Debug, Default)]
+pub struct Programs {
+    /// Alpha.
+    pub opacity: Option<Program>,
+    /// Emission; of an unlit material the base colour.
+    pub emission: Option<Program>,
+    /// What scatters.
+    pub surface: Option<Program>,
+    /// The shading normal, world space.
+    pub normal: Option<Program>,
+    /// Baked occlusion.
+    pub occlusion: Option<Program>,
+}
+
+impl Programs {
+    /// True where there is one at all.
+    pub fn any(&self) -> bool {
+        [&self.opacity, &self.emission, &self.surface, &self.normal, &self.occlusion].iter().any(|p| p.is_some())
+    }
 }
 
 /// A tangent-space normal map.
@@ -89,6 +127,8 @@ pub struct Material {
     pub normal: Option<NormalInput>,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
+    /// Where some input is a value of a graph.
+    pub programs: Option<Arc<Programs>>,
 }
 
 /// A material's lookups at one point, each texture read at most once.
@@ -97,6 +137,9 @@ struct Lookups<'a> {
     material: &'a Material,
     it: &'a Interaction,
     last: Option<(u8, [f32; 4])>,
+    /// Values of the program that answers for these inputs, as soon as one is asked for.
+    program: Option<&'a Program>,
+    values: Option<[Value; MOST_OUTPUTS]>,
 }
 
 impl Lookups<'_> {
@@ -112,22 +155,49 @@ impl Lookups<'_> {
     }
 
     fn color(&mut self, input: &ColorInput) -> Rgb {
-        match input.texture {
-            None => input.factor,
-            Some(texture) => {
+        match input.varying {
+            Varying::No => input.factor,
+            Varying::Texture(texture, _) => {
                 let [r, g, b, _] = self.texel(texture);
                 input.factor * Rgb::new(r, g, b)
+            }
+            Varying::Graph(value) => {
+                let [r, g, b, _] = self.value(value);
+                input.factor * rgb_of([r, g, b])
             }
         }
     }
 
     fn scalar(&mut self, input: &ScalarInput) -> f32 {
-        match input.texture {
-            None => input.factor,
-            Some((texture, channel)) => input.factor * self.texel(texture)[usize::from(channel)],
+        match input.varying {
+            Varying::No => input.factor,
+            Varying::Texture(texture, channel) => input.factor * self.texel(texture)[usize::from(channel)],
+            Varying::Graph(value) => input.factor * single(self.value(value)[0]),
         }
     }
+
+    #[cold]
+    fn value(&mut self, value: u8) -> Value {
+        let Self { scene, it, program, .. } = self;
+        let values = self.values.get_or_insert_with(|| match program {
+            Some(program) => scene.spot(it).run(program),
+            None => [[0.0; 4]; MOST_OUTPUTS],
+        });
+        values[usize::from(value)]
+    }
 }
+
+/// Within what sums over pixels can bear.
+pub(super) fn single(x: f64) -> f32 {
+    x.clamp(-LARGEST, LARGEST) as f32
+}
+
+pub(super) fn rgb_of(rgb: [f64; 3]) -> Rgb {
+    Rgb::from(rgb.map(single))
+}
+
+/// No value of a graph counts for more.
+const LARGEST: f64 = 1e30;
 
 impl Scene {
     /// The material at `it`.
@@ -135,22 +205,42 @@ impl Scene {
         &self.materials[it.material as usize]
     }
 
-    /// The texture behind `input` at `it`; white where the mesh lacks the UV set.
+    /// The texture behind `input` at `it`; white where the shape lacks the UV set.
     pub(super) fn look_up(&self, input: TextureRef, it: &Interaction) -> [f32; 4] {
-        let mesh = self.mesh(&self.instances[it.instance as usize]);
-        let Some(uv) = mesh.uv(input.uv_set, it.triangle, it.barycentrics) else { return [1.0; 4] };
-        let uv_area = mesh.uv_area(input.uv_set, it.triangle);
-        let footprint = if it.double_area > 0.0 { it.footprint * (uv_area / it.double_area).sqrt() } else { 0.0 };
-        input.lookup(&self.textures, uv.to_array(), footprint)
+        let shape = self.shape(&self.instances[it.instance as usize]);
+        let Some(uv) = shape.uv(input.uv_set, it.primitive, it.at) else { return [1.0; 4] };
+        input.lookup(&self.textures, uv.to_array(), it.uv_footprint(shape, input.uv_set))
     }
 
-    fn lookups<'a>(&'a self, it: &'a Interaction) -> Lookups<'a> {
-        Lookups { scene: self, material: self.material(it), it, last: None }
+    /// `it` as graphs see it.
+    pub(super) fn spot<'a>(&'a self, it: &'a Interaction) -> Spot<'a> {
+        let instance = &self.instances[it.instance as usize];
+        let around = Around {
+            shape: self.shape(instance),
+            instance,
+            index: it.instance,
+            asked: &self.asked,
+            textures: &self.textures,
+            camera: &self.camera,
+            origin: self.origin,
+        };
+        Spot { around, it }
+    }
+
+    /// `program` says which of the material's answers for the inputs that are looked up.
+    fn lookups<'a>(
+        &'a self,
+        it: &'a Interaction,
+        program: impl FnOnce(&'a Programs) -> Option<&'a Program>,
+    ) -> Lookups<'a> {
+        let material = self.material(it);
+        let program = material.programs.as_deref().and_then(program);
+        Lookups { scene: self, material, it, last: None, program, values: None }
     }
 
     fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
         let instance = &self.instances[it.instance as usize];
-        self.mesh(instance).color(it.triangle, it.barycentrics).or(instance.color)
+        self.shape(instance).color(it.primitive, it.at).or(instance.color)
     }
 
     /// Share of light that the surface stops or scatters at `it`; the rest passes.
@@ -162,25 +252,27 @@ impl Scene {
             Opacity::Mask(_) => 0.0,
             Opacity::Blend => it.footprint,
         };
-        let alpha = self.lookups(&Interaction { footprint, ..*it }).scalar(&material.alpha);
+        let it = &Interaction { footprint, ..*it };
+        let alpha = self.lookups(it, |programs| programs.opacity.as_ref()).scalar(&material.alpha);
         material.opacity.of(alpha * self.vertex_color(it).map_or(1.0, |c| c[3]))
     }
 
     /// Radiance that the surface emits at `it`.
     pub fn emission(&self, it: &Interaction) -> Rgb {
         let material = self.material(it);
-        if material.unlit { self.base_color(it) } else { self.lookups(it).color(&material.emission) }
-    }
-
-    fn base_color(&self, it: &Interaction) -> Rgb {
-        let color = self.lookups(it).color(&self.material(it).base_color);
+        let mut lookups = self.lookups(it, |programs| programs.emission.as_ref());
+        if !material.unlit {
+            let le = lookups.color(&material.emission);
+            return if material.programs.is_some() { le.map(|c| c.max(0.0)) } else { le };
+        }
+        let color = lookups.color(&material.base_color);
         self.vertex_color(it).map_or(color, |[r, g, b, _]| color * Rgb::new(r, g, b))
     }
 
     /// What scatters at `it`.
     pub fn surface(&self, it: &Interaction) -> Surface {
         let material = self.material(it);
-        let mut lookups = self.lookups(it);
+        let mut lookups = self.lookups(it, |programs| programs.surface.as_ref());
         let tint = self.vertex_color(it).map_or(Rgb::WHITE, |[r, g, b, _]| Rgb::new(r, g, b));
         Surface {
             base_color: (lookups.color(&material.base_color) * tint).map(|c| c.clamp(0.0, 1.0)),
@@ -197,7 +289,8 @@ impl Scene {
     /// Baked occlusion of bounced diffuse light at `it`; 1 for none.
     pub fn occlusion(&self, it: &Interaction) -> f32 {
         let Some(occlusion) = &self.material(it).occlusion else { return 1.0 };
-        let value = self.lookups(it).scalar(&ScalarInput { factor: 1.0, ..*occlusion });
+        let mut lookups = self.lookups(it, |programs| programs.occlusion.as_ref());
+        let value = lookups.scalar(&ScalarInput { factor: 1.0, ..*occlusion });
         1.0 + occlusion.factor * (value - 1.0)
     }
 }

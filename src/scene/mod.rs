@@ -1,13 +1,16 @@
 //! The scene as it is traced: `f32`, immutable during a render, in *render space*, whose origin lies
 //! near the camera.
 
+mod asked;
 mod effects;
 mod framing;
 mod ids;
 mod instance;
 mod interaction;
 mod material;
+mod path_state;
 mod prepare;
+mod spot;
 mod trace;
 
 pub use effects::Effects;
@@ -15,17 +18,20 @@ pub use ids::Ids;
 pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::Material;
+pub use path_state::{PathState, RayKind};
 pub use prepare::{Prepared, View, prepare};
 pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
+
+use asked::Asked;
 
 use crate::bvh::Bvh;
 use crate::camera::Camera;
 use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
-use crate::shape::Mesh;
+use crate::shape::Shape;
 use crate::texture::Texture;
 
 /// Everything that a ray can ask.
@@ -51,27 +57,28 @@ pub struct Scene {
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,
-    meshes: Vec<Arc<Mesh>>,
+    shapes: Vec<Shape>,
     instances: Vec<Instance>,
     materials: Vec<Material>,
     textures: Arc<Vec<Texture>>,
+    asked: Arc<Asked>,
 }
 
 impl Scene {
-    /// The placed mesh `i`, an index that a hit gives.
+    /// The placed shape `i`, an index that a hit gives.
     pub fn instance(&self, i: u32) -> &Instance {
         &self.instances[i as usize]
     }
 
-    /// The mesh of `instance`.
-    pub fn mesh(&self, instance: &Instance) -> &Mesh {
-        &self.meshes[instance.mesh as usize]
+    /// The shape of `instance`.
+    pub fn shape(&self, instance: &Instance) -> &Shape {
+        &self.shapes[instance.shape as usize]
     }
 
-    /// Memory of the acceleration structure, the meshes and the textures, in bytes.
+    /// Memory of the acceleration structure, the shapes and the textures, in bytes.
     pub fn bytes(&self) -> [usize; 3] {
-        let meshes = self.meshes.iter().map(|mesh| mesh.bytes()).sum();
+        let shapes = self.shapes.iter().map(Shape::bytes).sum();
         let textures = self.textures.iter().map(|texture| texture.image().bytes()).sum();
-        [self.bvh.bytes(), meshes, textures]
+        [self.bvh.bytes(), shapes, textures]
     }
 }

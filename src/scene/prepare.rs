@@ -5,6 +5,7 @@ mod dome;
 mod emissive;
 mod flat;
 mod geometry;
+mod graphs;
 mod lamp;
 mod lights;
 mod links;
@@ -26,7 +27,9 @@ use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
 use crate::settings::{LightSelection, Settings};
+use emissive::Shared;
 use links::Links;
+use materials::Materials;
 
 /// What to make of a scene's cameras.
 #[derive(Clone, Debug, Default)]
@@ -64,19 +67,20 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let (materials, textures) = materials::prepare(&mut desc, settings, &mut warnings);
+    let Materials { list: materials, textures, names } = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
     let mut geometry = geometry::prepare(&desc, origin, &materials, &links, &mut warnings);
     let build_time = start.elapsed();
+    let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
     let lights = if effects.light || effects.group_shadows || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
-        let lights =
-            lights::prepare(&desc, dome, origin, &links, groups, &mut geometry, &materials, &textures, &mut warnings);
+        let shared = Shared { materials: &materials, textures: &textures, asked: &asked, camera, origin };
+        let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, &mut warnings);
         tell_of_darkness(&desc, &lights, &materials, &mut warnings);
         lights
     } else {
@@ -104,10 +108,11 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         film_transparent,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
-        meshes: geometry.meshes,
+        shapes: geometry.shapes,
         instances: geometry.instances,
         materials,
         textures,
+        asked,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
 }

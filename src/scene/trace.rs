@@ -1,6 +1,6 @@
 //! Rays into the scene: what they hit, and how much light a segment lets through.
 
-use super::{Interaction, Scene, mask};
+use super::{Interaction, PathState, Scene, mask};
 use crate::bvh::Hit;
 use crate::light::{Emitter, Light, Shadow};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
@@ -48,7 +48,10 @@ impl Scene {
         let mut ray = *ray;
         for _ in 0..MAX_TRANSPARENT {
             let Some(hit) = self.closest_hit(&ray, cutout) else { return left };
-            let it = self.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+            let mut it = self.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+            if self.effects.light_path {
+                it.path = PathState { length: hit.t, ..PathState::SHADOW };
+            }
             left *= 1.0 - self.opacity(&it);
             if left == 0.0 {
                 return 0.0;

@@ -13,7 +13,7 @@ pub enum Attribute<T> {
 
 impl<T: Copy> Attribute<T> {
     /// The values at the three corners of `triangle`, whose points are `indices`.
-    fn at(&self, triangle: u32, indices: [u32; 3]) -> [T; 3] {
+    pub fn at(&self, triangle: u32, indices: [u32; 3]) -> [T; 3] {
         match self {
             Self::Point(values) => indices.map(|i| values[i as usize]),
             Self::Corner(values) => [0, 1, 2].map(|k| values[3 * triangle as usize + k]),
@@ -78,6 +78,21 @@ impl Mesh {
     pub fn normal(&self, triangle: u32, uv: [f32; 2]) -> Option<Vec3> {
         let normals = self.normals.as_ref()?;
         Some(blend(normals.at(triangle, self.triangles[triangle as usize]), uv))
+    }
+
+    /// Shading normals of the corners of `triangle`; `None` for a faceted mesh.
+    pub fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        Some(self.normals.as_ref()?.at(triangle, self.triangles[triangle as usize]))
+    }
+
+    /// UV of set `set` at the corners of `triangle`; `None` where the mesh has no such set.
+    pub fn corner_uvs(&self, set: u32, triangle: u32) -> Option<[Vec2; 3]> {
+        Some(self.uvs.get(set as usize)?.at(triangle, self.triangles[triangle as usize]))
+    }
+
+    /// Vertex colours of the corners of `triangle`.
+    pub fn corner_colors(&self, triangle: u32) -> Option<[[f32; 4]; 3]> {
+        Some(self.colors.as_ref()?.at(triangle, self.triangles[triangle as usize]))
     }
 
     /// UV of set `set` at a point; `None` where the mesh has no such set.

@@ -1,7 +1,10 @@
-//! Images looked up along rays: mip pyramids in the stored size, filtered by the ray's footprint.
+//! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint),
+//! textures computed from a position ([`procedural`]), and graphs of both ([`graph`]).
 
+pub mod graph;
 mod image;
 mod lookup;
+pub mod procedural;
 mod pyramid;
 mod srgb;
 mod texel;

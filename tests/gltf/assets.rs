@@ -23,7 +23,7 @@ fn asset(path: &str, options: &ImportOptions) -> Option<SceneDesc> {
 }
 
 fn triangles(scene: &SceneDesc) -> usize {
-    scene.instances.iter().map(|i| scene.meshes[i.mesh as usize].triangles.len()).sum()
+    scene.instances.iter().map(|i| scene.mesh(i).unwrap().triangles.len()).sum()
 }
 
 #[test]

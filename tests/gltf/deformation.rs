@@ -37,7 +37,7 @@ fn morph_weights_of_the_mesh_of_the_node_and_of_an_animation() {
     let channels = json!([{"sampler": 0, "target": {"node": 1, "path": "weights"}}]);
     glb.push("animations", json!({"samplers": samplers, "channels": channels}));
     let scene = load_with(&glb, &ImportOptions { frame: Some(6.0), ..ImportOptions::default() });
-    let mesh = &scene.meshes[scene.instances[1].mesh as usize];
+    let mesh = scene.mesh(&scene.instances[1]).unwrap();
     assert_eq!(mesh.points[0][2], 2.0);
 }
 

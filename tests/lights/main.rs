@@ -18,6 +18,7 @@ mod profile;
 mod quadrature;
 mod random;
 mod rect;
+mod rounds;
 #[path = "../support/scene.rs"]
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;

@@ -41,7 +41,7 @@ class Answer:
 
     def __init__(self, info):
         values = info["values"]
-        self.meshes, self.warnings = values["meshes"], info["warnings"]
+        self.meshes, self.rounds, self.warnings = values["meshes"], values["rounds"], info["warnings"]
         by_place = lambda things: {thing["place"]: thing for thing in things}
         self.lights, self.cameras = by_place(values["lights"]), by_place(values["cameras"])
         self.instances = defaultdict(list)
@@ -99,6 +99,8 @@ def judge_shapes(stage, answer, found):
             found.check(near(ours, world), path, f"stands at\n{ours}\nand not at\n{world}")
         if is_mesh and faces is not None:
             judge_mesh(stage, prim, faces, instances[0], answer, found)
+        if prim.GetTypeName() in ("Points", "BasisCurves") and not answer.warned(path, "value", "point", "curve"):
+            judge_rounds(stage, prim, instances[0], answer, found)
     judge_stand_ins(stage, answer, left, found)
     expected = stage.instanced()
     if expected is not None:
@@ -126,6 +128,47 @@ def judge_stand_ins(stage, answer, left, found):
         ok = (expected[0] - thickness <= ours[0]).all() and (ours[1] <= expected[1] + thickness).all()
         tight = np.abs(ours - expected).max() <= thickness or mode == "cards"
         found.check(ok and tight, path, f"is drawn as {mode} within\n{ours}\nnot\n{expected}")
+
+
+def judge_rounds(stage, prim, instance, answer, found):
+    path, rounds = str(prim.GetPath()), instance["rounds"]
+    if prim.GetTypeName() == "BasisCurves":
+        expected = stage.strands(prim)
+        if expected is None:
+            return found.check(instance["mesh"] is not None, path, "is no ribbon")
+    if rounds is None:
+        return found.check(False, path, "is no set of strands or balls")
+    rounds = answer.rounds[rounds]
+    balls = np.column_stack([rounds["points"], rounds["radii"]])
+    color = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
+    if prim.GetTypeName() == "Points":
+        expected = stage.balls(prim)
+        found.check(near(balls, expected), path, f"has the balls\n{balls}\nand not\n{expected}")
+        if rounds["colors"] and color and color.HasValue() and len(expected) == len(color.ComputeFlattened(stage.time)):
+            colors = np.array(rounds["colors"])[:, :3]
+            found.check(near(colors, color.ComputeFlattened(stage.time)), path, "has other colours")
+        return
+    ends = [strand["end"] for strand in rounds["strands"]]
+    found.check(len(ends) == len(expected), path, f"has {len(ends)} strands, not {len(expected)}")
+    for ours, strand, (theirs, closed) in zip(np.split(balls, ends), rounds["strands"], expected):
+        size = np.ptp(theirs[:, :3], axis=0).max() + theirs[:, 3].max()
+        found.check(strand["closed"] == closed, path, "is closed or open where it should not be")
+        # Ours lie on the curve, and the curve is nowhere far from ours.
+        off = np.abs(theirs[None] - ours[:, None]).max(axis=-1).min(axis=1).max()
+        found.check(off < 0.02 * size, path, f"has a point {off} off its curve")
+        chain = np.concatenate([ours, ours[:1]]) if closed else ours
+        gap = distance_from_chain(theirs[:, :3], chain[:, :3]).max()
+        allowed = 0.06 * np.max(theirs[:, 3]) + 1e-4 * size
+        found.check(gap < allowed, path, f"leaves its curve by {gap}, more than {allowed}")
+        starts = near(ours[0], theirs[0], 1e-5) and (closed or near(ours[-1], theirs[-1], 1e-5))
+        found.check(starts, path, "starts or ends elsewhere")
+
+
+def distance_from_chain(points, chain):
+    a, step = chain[:-1], np.diff(chain, axis=0)
+    t = np.einsum("pck,ck->pc", points[:, None] - a, step) / np.maximum((step**2).sum(-1), 1e-30)
+    nearest = a + np.clip(t, 0, 1)[..., None] * step
+    return np.linalg.norm(points[:, None] - nearest, axis=-1).min(axis=1)
 
 
 def judge_mesh(stage, prim, faces, instance, answer, found):
@@ -357,6 +400,54 @@ CASES = {
                 uniform token[] xformOpOrder = ["xformOp:translate"]
                 def Mesh "Leaf" {""" + MESH + """}
             } }
+        }
+        """,
+    },
+    "curves and points": {
+        "root.usda": HEAD.format("")
+        + """
+        def Xform "Hair" {
+            float3 xformOp:scale = (2, 2, 3)
+            uniform token[] xformOpOrder = ["xformOp:scale"]
+        """
+        + "".join(
+            f"""
+            def BasisCurves "{basis}_{wrap}" {{
+                uniform token type = "{"linear" if basis == "linear" else "cubic"}"
+                uniform token basis = "{"bezier" if basis == "linear" else basis}"
+                uniform token wrap = "{wrap}"
+                int[] curveVertexCounts = [{count}, {count}]
+                point3f[] points = {points}
+                float[] widths.timeSamples = {{ 0: {widths[:size]}, 10: {widths[1 : size + 1]} }}
+                uniform token purpose = "render"
+            }}
+            """.replace("float[] widths", f'float[] widths (interpolation = "{how}")\n                float[] widths')
+            for basis, wrap, count, how, size in (
+                ("linear", "nonperiodic", 6, "vertex", 12),
+                ("linear", "periodic", 6, "uniform", 2),
+                ("bezier", "nonperiodic", 7, "varying", 6),
+                ("bezier", "periodic", 6, "constant", 1),
+                ("bspline", "nonperiodic", 6, "vertex", 12),
+                ("bspline", "periodic", 6, "varying", 12),
+                ("bspline", "pinned", 6, "vertex", 12),
+                ("catmullRom", "nonperiodic", 6, "varying", 8),
+                ("catmullRom", "periodic", 6, "vertex", 12),
+                ("catmullRom", "pinned", 6, "vertex", 12),
+            )
+            for points in ([(round(math.cos(2.4 * i), 3), round(math.sin(1.7 * i), 3), i % 5) for i in range(2 * count)],)
+            for widths in ([round(0.1 + 0.05 * (i % 3), 3) for i in range(16)],)
+        )
+        + """
+            def Points "Dust" {
+                point3f[] points.timeSamples = { 0: [(0, 0, 0), (1, 2, 3), (4, 5, 6)], 10: [(0, 0, 9), (1, 2, 3), (4, 5, 6)] }
+                float[] widths = [0.5, 1, 2]
+                color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0.5)] (interpolation = "vertex")
+                int[] primvars:displayColor:indices = [1, 0, 1]
+            }
+            def Points "Even" {
+                point3f[] points = [(0, 0, 0), (1, 2, 3)]
+                float[] widths = [0.5] (interpolation = "constant")
+            }
         }
         """,
     },

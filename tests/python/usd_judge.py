@@ -12,6 +12,28 @@ Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]
 LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
 
 
+BASES = {
+    "linear": [[1, 0], [-1, 1]],
+    "bezier": [[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]],
+    "bspline": np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6,
+    "catmullRom": np.array([[0, 2, 0, 0], [-1, 0, 1, 0], [2, -5, 4, -1], [-1, 3, -3, 1]]) / 2,
+}
+
+
+def along_piece(values, basis, wrap, k, t):
+    """Piece `k` of a curve at `t`, by the matrix of its basis (rows for 1, t, t², t³)."""
+    matrix, n = np.array(BASES[basis], float), len(values)
+    first = 3 * k if basis == "bezier" else k - (basis not in ("linear", "bezier") and wrap != "nonperiodic")
+
+    def at(i):
+        if wrap == "pinned" and not 0 <= i < n:
+            return 2 * values[0] - values[1] if i < 0 else 2 * values[-1] - values[-2]
+        return values[i % n]
+
+    points = np.array([at(first + i) for i in range(len(matrix))])
+    return np.vander(t, len(matrix), increasing=True) @ matrix @ points
+
+
 class Stage:
     """A stage at the time at which Penumbra reads it."""
 
@@ -136,6 +158,55 @@ class Stage:
         if left:
             found.add(self.bound(prim))
         return {material for material in found if material}
+
+    # Curves and points
+
+    def widths(self, prim, schema):
+        """Their interpolation and values; the primvar comes before the attribute."""
+        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("widths")
+        if primvar and primvar.HasValue():
+            return primvar.GetInterpolation(), np.array(primvar.ComputeFlattened(self.time), float)
+        values = schema.GetWidthsAttr().Get(self.time)
+        return (schema.GetWidthsInterpolation(), np.array(values, float)) if values else ("constant", np.ones(1))
+
+    def balls(self, prim):
+        """Centres and radii of the points that have both, in rows."""
+        points = UsdGeom.Points(prim)
+        centers = np.array(points.GetPointsAttr().Get(self.time) or [], float).reshape(-1, 3)
+        interpolation, widths = self.widths(prim, points)
+        radii = (widths[:1].repeat(len(centers)) if interpolation == "constant" else widths[: len(centers)]) / 2
+        balls = np.column_stack([centers, radii])
+        return balls[np.isfinite(balls).all(axis=-1) & (radii > 0)]
+
+    def strands(self, prim):
+        """Of each curve many points with their radii, in rows, and whether it is closed; `None` for ribbons."""
+        curves = UsdGeom.BasisCurves(prim)
+        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("normals")
+        if curves.GetNormalsAttr().Get(self.time) or (primvar and primvar.HasValue()):
+            return None
+        centers = np.array(curves.GetPointsAttr().Get(self.time), float).reshape(-1, 3)
+        basis = "linear" if curves.GetTypeAttr().Get(self.time) == "linear" else curves.GetBasisAttr().Get(self.time)
+        wrap = curves.GetWrapAttr().Get(self.time)
+        interpolation, widths = self.widths(prim, curves)
+        strands, start, joint = [], 0, 0
+        t = np.linspace(0, 1, 129)
+        for i, count in enumerate(curves.GetCurveVertexCountsAttr().Get(self.time)):
+            own = slice(start, start + count)
+            pieces = curves.ComputeSegmentCounts(self.time)[i]
+            joints = pieces if wrap == "periodic" else pieces + 1
+            line = []
+            for k in range(pieces):
+                points = along_piece(centers[own], basis, wrap, k, t)
+                if interpolation == "vertex":
+                    width = along_piece(widths[own], basis, wrap, k, t)
+                elif interpolation == "varying":
+                    width = (1 - t) * widths[joint + k] + t * widths[joint + (k + 1) % joints]
+                else:
+                    width = widths[0 if interpolation == "constant" else i].repeat(len(t))
+                line.append(np.column_stack([points, width / 2]))
+            strands.append((np.concatenate(line), wrap == "periodic"))
+            start, joint = start + count, joint + joints
+        return strands
 
     # Point instancers
 

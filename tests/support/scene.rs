@@ -2,7 +2,7 @@
 
 use penumbra::desc::{
     Attribute, CameraDesc, ColorInput, InstanceDesc, LightDesc, LightKind, LightLinks, MaterialDesc, MeshDesc,
-    ObjectInfo, ProjectionDesc, ScalarInput, SceneDesc, Visibility,
+    ObjectInfo, ProjectionDesc, RoundsDesc, ScalarInput, SceneDesc, ShapeRef, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::film::{PassSet, Picture};
@@ -44,12 +44,22 @@ impl Builder {
     /// Any mesh placed by `transform`.
     pub fn instance(&mut self, mesh: MeshDesc, material: u32, transform: DAffine3) {
         self.desc.meshes.push(mesh);
+        self.place(ShapeRef::Mesh(self.desc.meshes.len() as u32 - 1), material, transform);
+    }
+
+    /// Strands or balls, where their points say.
+    pub fn rounds(&mut self, rounds: RoundsDesc, material: u32) {
+        self.desc.rounds.push(rounds);
+        self.place(ShapeRef::Rounds(self.desc.rounds.len() as u32 - 1), material, DAffine3::IDENTITY);
+    }
+
+    fn place(&mut self, shape: ShapeRef, material: u32, transform: DAffine3) {
         let name = format!("object {}", self.desc.instances.len());
         self.desc.instances.push(InstanceDesc {
             name: name.as_str().into(),
             place: Place::default(),
             asset: "asset".into(),
-            mesh: self.desc.meshes.len() as u32 - 1,
+            shape,
             transform,
             motion: Vec::new(),
             materials: vec![Some(material)],

@@ -26,7 +26,7 @@ fn bindings_are_those_of_openusd() {
     // All instances have the same materials and meshes, whatever else is bound to them.
     let [first, second, third] = ["First", "Second", "Third"].map(|i| loaded.one(&format!("/World/{i}/Geo/A")));
     assert_eq!(first.materials, third.materials);
-    assert_eq!((first.mesh, first.mesh), (second.mesh, third.mesh));
+    assert_eq!((first.shape, first.shape), (second.shape, third.shape));
     let none = loaded.material("/Unbound");
     assert!(!expected.iter().any(|(_, material)| *material == none), "{none}");
     // What is bound but does not exist hides what is bound above.

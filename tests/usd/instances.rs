@@ -1,7 +1,8 @@
 //! Instances: native ones, nested, and point instancers.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
+use penumbra::desc::ShapeRef;
 use penumbra::import::ImportOptions;
 use penumbra::math::{DAffine3, DMat3, DVec3};
 
@@ -21,8 +22,8 @@ fn instances_share_their_meshes() {
     for (path, origin) in nested {
         assert_eq!(loaded.origin(path), origin, "{path}");
     }
-    let mesh = |path| loaded.one(path).mesh;
-    let meshes: BTreeSet<u32> = nested.map(|(path, _)| mesh(path)).into();
+    let mesh = |path| loaded.one(path).shape;
+    let meshes: HashSet<ShapeRef> = nested.map(|(path, _)| mesh(path)).into();
     assert_eq!(meshes.len(), 1);
     // An inherited primvar may change the mesh, but once for all that inherit the same value.
     assert_eq!(mesh("/World/Colored/T"), mesh("/World/AlsoColored/T"));
@@ -71,7 +72,7 @@ fn point_instancers_place_their_prototypes() {
             let close = instance.transform.abs_diff_eq(expected, 2e-6);
             assert!(close, "{:?} at {frame}: {:?} is not {expected:?}", instance.place, instance.transform);
         }
-        let meshes: BTreeSet<u32> = loaded.scene.instances.iter().map(|i| i.mesh).collect();
+        let meshes: HashSet<ShapeRef> = loaded.scene.instances.iter().map(|i| i.shape).collect();
         assert_eq!(meshes.len(), 2);
     }
 }

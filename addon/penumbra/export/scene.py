@@ -47,6 +47,7 @@ class Exporter:
         scene = depsgraph.scene_eval
         document = {
             "file": bpy.data.filepath,
+            "version": list(bpy.app.version),
             "render": camera.render(scene, size),
             "camera": camera.camera(camera_object or scene.camera, scene),
             "world": lights.world(scene.world, self),

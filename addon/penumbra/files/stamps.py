@@ -53,7 +53,8 @@ class Stamps(Exporter):
 
     def _stamp(self, read, source):
         self.images = {}
-        stamp = {"version": VERSION, "fps": _fps(self._scene), "unit": self._unit, **read(source)}
+        stamp = {"version": VERSION, "blender": list(bpy.app.version), "fps": _fps(self._scene), "unit": self._unit}
+        stamp.update(read(source))
         if self.images:
             stamp["images"] = self.images
         return stamp

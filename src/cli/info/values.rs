@@ -6,7 +6,7 @@
 
 use penumbra::desc::{
     Attribute, CameraDesc, ConeDesc, DecayLaw, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
-    ProjectionDesc, SceneDesc, Visibility,
+    Motion, ProjectionDesc, RoundsDesc, SceneDesc, ShapeRef, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DMat4};
@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 pub fn describe(scene: &SceneDesc) -> Value {
     json!({
         "meshes": scene.meshes.iter().map(mesh).collect::<Vec<_>>(),
+        "rounds": scene.rounds.iter().map(rounds).collect::<Vec<_>>(),
         "instances": scene.instances.iter().map(|i| instance(i, scene)).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| light(l, scene)).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(camera).collect::<Vec<_>>(),
@@ -46,8 +47,26 @@ fn mesh(mesh: &MeshDesc) -> Value {
         "uvs": mesh.uvs.iter().map(attribute).collect::<Vec<_>>(),
         "colors": mesh.colors.as_ref().map(attribute),
         "material_slots": mesh.material_slots,
-        "motion": mesh.motion.iter().map(|m| json!({ "time": m.time, "points": m.value })).collect::<Vec<_>>(),
+        "motion": motion(&mesh.motion),
     })
+}
+
+fn rounds(rounds: &RoundsDesc) -> Value {
+    json!({
+        "name": &*rounds.name,
+        "place": node(&rounds.place),
+        "points": rounds.points,
+        "radii": rounds.radii,
+        "strands": rounds.strands.iter().map(|s| json!({ "end": s.end, "closed": s.closed })).collect::<Vec<_>>(),
+        "uvs": rounds.uvs,
+        "colors": rounds.colors,
+        "material_slots": rounds.material_slots,
+        "motion": motion(&rounds.motion),
+    })
+}
+
+fn motion(motion: &[Motion<Vec<[f32; 3]>>]) -> Vec<Value> {
+    motion.iter().map(|m| json!({ "time": m.time, "points": m.value })).collect()
 }
 
 fn attribute<T: serde::Serialize>(attribute: &Attribute<T>) -> Value {
@@ -65,7 +84,8 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
     json!({
         "name": &*instance.name,
         "place": node(&instance.place),
-        "mesh": instance.mesh,
+        "mesh": match instance.shape { ShapeRef::Mesh(i) => Some(i), ShapeRef::Rounds(_) => None },
+        "rounds": match instance.shape { ShapeRef::Rounds(i) => Some(i), ShapeRef::Mesh(_) => None },
         "matrix": matrix(&instance.transform),
         "motion": instance.motion.iter()
             .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
@@ -164,6 +184,9 @@ fn camera(camera: &CameraDesc) -> Value {
         }
         ProjectionDesc::Orthographic { half_width, half_height } => {
             json!({ "kind": "orthographic", "half_width": half_width, "half_height": half_height })
+        }
+        ProjectionDesc::Equirectangular { longitude, latitude } => {
+            json!({ "kind": "equirectangular", "longitude": longitude, "latitude": latitude })
         }
     };
     json!({

@@ -14,7 +14,7 @@
 //! agree on (Blender takes the luminance of a color and the mean of a vector, MaterialX a place by name):
 //! they say it with [`Graph::luminance`], [`Graph::average`] or [`Graph::place`].
 //!
-//! **No value is ever NaN or infinite**: a function that has no finite result gives 0 in that place, as
+//! **No value is ever NaN, infinite or −0**: a function that has no finite result gives 0 in that place, as
 //! Cycles' `safe_*` functions do.
 
 mod build;
@@ -25,8 +25,8 @@ mod op;
 pub use function::{Blend, Curves, Function, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
 pub use op::{
-    Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Space, Voronoi, VoronoiFeature, Wave,
-    WaveDirection, WaveProfile,
+    Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Scatter, Space, Voronoi, VoronoiFeature,
+    VoronoiOutput, Wave, WaveDirection, WaveProfile,
 };
 
 /// Four numbers.
@@ -140,9 +140,10 @@ impl Graph {
     }
 }
 
-/// `value` with 0 for what is NaN or infinite.
+/// `value` with 0 for what is NaN, infinite or −0: functions that are the same to the eye then are so to
+/// the bit, whatever was folded.
 pub fn finite(value: Value) -> Value {
-    value.map(|x| if x.is_finite() { x } else { 0.0 })
+    value.map(|x| if x.is_finite() { x + 0.0 } else { 0.0 })
 }
 
 #[cfg(test)]
@@ -167,8 +168,7 @@ mod tests {
     #[test]
     fn arguments_come_before_what_uses_them_whatever_a_door_does() {
         let mut other = Graph::default();
-        (0..9).for_each(|i| drop(other.number(f64::from(i))));
-        let far = other.number(8.0);
+        let far = (0..9).map(|i| other.number(f64::from(i))).last().unwrap();
         let mut graph = Graph::default();
         let uv = graph.leaf(Leaf::Uv(0));
         let id = graph.push(Op::Apply(Function::Math(Math::Sine), vec![far]));

@@ -77,7 +77,7 @@ pub enum Quantity {
     Normal,
 }
 
-/// Procedural textures, those of Blender 5.0. The result is a color in the first three places and the
+/// Procedural textures, those of Blender. The result is a color in the first three places and the
 /// texture's number in the fourth; where the color costs extra and is not asked for, the number stands in
 /// all four.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +104,12 @@ pub enum Procedural {
     WhiteNoise {
         /// How many coordinates count: w alone, x y, x y z, or all.
         dimensions: u8,
+    },
+    /// vector, scale, frequency, anisotropy, orientation (radians in the plane, a vector in space). Value,
+    /// phase and intensity stand in the first three places, the value in the fourth, too.
+    Gabor {
+        /// In the plane of x and y instead of in space.
+        flat: bool,
     },
 }
 
@@ -146,8 +152,30 @@ pub struct Voronoi {
     pub metric: Metric,
     /// True where octaves are brought to 0 to 1.
     pub normalize: bool,
-    /// True for the position of the nearest point (w in the fourth place) instead of color and distance.
-    pub position: bool,
+    /// What is asked for.
+    pub output: VoronoiOutput,
+    /// Which random numbers place the points.
+    pub scatter: Scatter,
+}
+
+/// What is asked of Voronoi noise. Features that have but a distance or radius give that alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VoronoiOutput {
+    /// The distance in all four places.
+    Distance,
+    /// The color of the cell, the distance in the fourth place.
+    Color,
+    /// Where the point is, w in the fourth place.
+    Position,
+}
+
+/// Which random numbers place the points of Voronoi noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scatter {
+    /// Those of Blender up to 4.5.
+    Jenkins,
+    /// Those of Blender 5.0.
+    Pcg,
 }
 
 /// What Voronoi noise measures.

@@ -17,6 +17,8 @@ use crate::desc::RenderDesc;
 pub struct Document {
     /// Path of the .blend file; empty for one that was never saved.
     pub file: String,
+    /// `bpy.app.version`.
+    pub version: [u32; 3],
     /// What of the scene's own settings shapes the picture.
     pub render: RenderData,
     /// The active camera.

@@ -43,6 +43,7 @@ pub struct Images<'a> {
     data: &'a HashMap<String, ImageData>,
     in_memory: &'a HashMap<String, ImageSource>,
     place: &'a Place,
+    version: [u32; 3],
     /// Name and tile of each image asked for.
     wanted: Vec<(String, Option<u32>)>,
     textures: Vec<TextureDesc>,
@@ -54,8 +55,14 @@ impl<'a> Images<'a> {
         data: &'a HashMap<String, ImageData>,
         in_memory: &'a HashMap<String, ImageSource>,
         place: &'a Place,
+        version: [u32; 3],
     ) -> Self {
-        Self { data, in_memory, place, wanted: Vec::new(), textures: Vec::new() }
+        Self { data, in_memory, place, version, wanted: Vec::new(), textures: Vec::new() }
+    }
+
+    /// The version of Blender that all this is from.
+    pub fn version(&self) -> [u32; 3] {
+        self.version
     }
 
     /// What Blender says of the image of this name.
@@ -181,7 +188,7 @@ mod tests {
         };
         let in_memory = [("a".to_owned(), pixels)].into();
         let place = Place::default();
-        let mut images = Images::new(&data, &in_memory, &place);
+        let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         assert_eq!(images.texture("a", None, look()), Some(0));
         assert_eq!(images.texture("b", None, look()), Some(1));
         assert_eq!(images.texture("a", None, look()), Some(0));
@@ -202,7 +209,7 @@ mod tests {
         let data: HashMap<String, ImageData> =
             [("wood".to_owned(), ImageData { path: "/no/wood.png".into(), ..ImageData::default() })].into();
         let (in_memory, place) = (HashMap::new(), Place::default());
-        let mut images = Images::new(&data, &in_memory, &place);
+        let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         images.image("wood", None);
         let mut warnings = Warnings::new();
         images.finish(&mut warnings);

@@ -10,7 +10,7 @@ use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
 use super::transform::affine_of_floats;
 use super::{camera, light, material, nodes, random, world};
-use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc};
+use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -114,7 +114,7 @@ impl BlenderScene {
             desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
             desc.render.camera = Some(data.name.as_str().into());
         }
-        let mut images = Images::new(&document.images, &self.images, &place);
+        let mut images = Images::new(&document.images, &self.images, &place, document.version);
         let names = document.materials.iter().filter_map(|m| m.nodes.as_ref()).flat_map(TreeData::uv_map_names);
         let uv_sets = UvSets::new(names, self.meshes.values());
         let of_object = self.add_instances(&uv_sets, &mut desc, warnings);
@@ -146,7 +146,7 @@ impl BlenderScene {
                 name: data.name.as_str().into(),
                 place: desc.place.at(&data.name),
                 asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
-                mesh: index,
+                shape: ShapeRef::Mesh(index),
                 transform: affine_of_floats(&matrix),
                 motion: Vec::new(),
                 materials: data.materials.clone(),

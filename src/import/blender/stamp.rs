@@ -42,6 +42,8 @@ pub enum Moment {
 #[serde(default)]
 pub struct Stamp {
     version: u32,
+    /// `bpy.app.version`.
+    blender: [u32; 3],
     /// Frames per second of Blender's scene.
     fps: f64,
     /// Metres that the file makes of Blender's unit.
@@ -66,6 +68,7 @@ impl Default for Stamp {
     fn default() -> Self {
         Self {
             version: 0,
+            blender: [5, 0, 0],
             fps: 24.0,
             unit: 1.0,
             light: None,
@@ -229,7 +232,7 @@ impl Stamp {
         read: impl FnOnce(&mut Images<'_>, &mut Warnings) -> T,
     ) -> (T, u32) {
         let in_memory = HashMap::new();
-        let mut images = Images::new(&self.images, &in_memory, place);
+        let mut images = Images::new(&self.images, &in_memory, place, self.blender);
         let result = read(&mut images, warnings);
         let first = all.len() as u32;
         all.extend(images.finish(warnings).0);

@@ -19,7 +19,7 @@ use super::mesh::{self, Job};
 use super::node::{self, Hierarchy, PlacedNode};
 use super::texture::{Lookup, TextureTable};
 use super::{camera, instancing, material, stamp};
-use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, ObjectInfo, SceneDesc, Visibility};
+use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, ObjectInfo, SceneDesc, ShapeRef, Visibility};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::{DAffine3, DMat4, DVec3};
 
@@ -322,7 +322,7 @@ impl Builder<'_> {
                     name: placed.name.clone(),
                     place: placed.place.clone(),
                     asset: placed.asset.clone(),
-                    mesh: part.mesh,
+                    shape: ShapeRef::Mesh(part.mesh),
                     transform,
                     motion: Vec::new(),
                     materials: vec![part.material],

@@ -112,7 +112,6 @@ fn lens(values: &Values<'_>, focal_length: f64) -> Option<LensDesc> {
     if f_stop <= 0.0 || focus <= 0.0 || focal_length <= 0.0 {
         return None;
     }
-    values.warn("depth of field is not rendered yet: everything is sharp");
     let meters = values.reading.meters;
     let aperture_radius = 0.5 * focal_length * TENTH * meters / f_stop;
     Some(LensDesc::round(aperture_radius, focus * meters))
@@ -206,7 +205,6 @@ mod tests {
         near(lens.aperture_radius, 0.0125);
         near(lens.focus_distance, 4.0);
         assert_eq!(camera.shutter, [-0.25, 0.25]);
-        assert!(said.contains("depth of field is not rendered"));
     }
 
     #[test]

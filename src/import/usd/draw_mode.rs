@@ -12,7 +12,7 @@ use openusd::usd::Prim;
 use super::cards::{self, Picture};
 use super::inherit::{Context, Pose};
 use super::kinds::{Kind, Role};
-use super::shape::{self, Quad, StandIn};
+use super::shape::{self, Built, Quad, StandIn};
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
 use crate::error::Warnings;
@@ -191,8 +191,13 @@ fn extent(reading: &Reading<'_>, leaf: &Leaf) -> Option<Range> {
     authored("extent").or_else(|| authored("points")).or_else(|| {
         let source = shape::read(reading, &leaf.prim, &[])?;
         let place = reading.place_of(leaf.prim.path());
-        let built = shape::build(source, &shape::Wants::default(), 0, &place, &mut Warnings::new())?;
-        of_points(&built.mesh.points)
+        match shape::build(source, &shape::Wants::default(), 0, &place, &mut Warnings::new())? {
+            Built::Mesh(mesh) => of_points(&mesh.points),
+            Built::Rounds(rounds) => {
+                let corners = |(p, r): (&[f32; 3], &f32)| [-1.0, 1.0].map(|s| p.map(|x| x + s * r));
+                of_points(&rounds.points.iter().zip(&rounds.radii).flat_map(corners).collect::<Vec<_>>())
+            }
+        }
     })
 }
 

@@ -1,4 +1,4 @@
-//! Meshes and instances of the scene.
+//! Shapes and instances of the scene.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -9,13 +9,14 @@ use openusd::sdf::Path;
 use super::gather::Found;
 use super::inherit::moving;
 use super::light::{self, ShapeLight};
+use super::shape::Built;
 use super::shapes::{Dressed, Shapes};
 use super::stage::Reading;
-use crate::desc::{InstanceDesc, LightLinks, Motion, ObjectInfo, SceneDesc, Visibility};
+use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef, Visibility};
 use crate::error::Place;
 use crate::math::DAffine3;
 
-/// Adds the meshes of `shapes`, and an instance for everything that was found and shows one.
+/// Adds the shapes of `shapes`, and an instance for everything that was found and shows one.
 pub(super) fn place(
     reading: &Reading<'_>,
     found: &[Found],
@@ -24,18 +25,24 @@ pub(super) fn place(
     geometry: &HashMap<Path, ShapeLight>,
     scene: &mut SceneDesc,
 ) {
-    let mut meshes: Vec<Option<(u32, Vec<DAffine3>)>> = Vec::new();
+    let mut refs: Vec<Option<ShapeRef>> = Vec::new();
     for built in shapes.built {
-        meshes.push(built.map(|built| {
-            scene.meshes.push(built.mesh);
-            (scene.meshes.len() as u32 - 1, built.copies)
+        refs.push(built.map(|built| match built {
+            Built::Mesh(mesh) => {
+                scene.meshes.push(mesh);
+                ShapeRef::Mesh(scene.meshes.len() as u32 - 1)
+            }
+            Built::Rounds(rounds) => {
+                scene.rounds.push(rounds);
+                ShapeRef::Rounds(scene.rounds.len() as u32 - 1)
+            }
         }));
     }
     let mut names = Names::default();
     let mut shining = HashMap::new();
     for (number, found) in found.iter().enumerate() {
         let Some(dressed) = shapes.by_look.get(&found.key()) else { continue };
-        let Some(Some((mesh, copies))) = meshes.get(dressed.shape) else { continue };
+        let Some(Some(shape)) = refs.get(dressed.shape) else { continue };
         if !usable(&found.pose.world) {
             reading.warn(&found.path, "its transform is singular or not finite; it is left out");
             continue;
@@ -43,16 +50,20 @@ pub(super) fn place(
         let own = found.look.shape.as_ref().and_then(|shape| shape.light.as_ref());
         let light = own.or_else(|| geometry.get(&found.path));
         let materials = match light {
-            Some(light) => shine(reading, found, dressed, light, *mesh, &mut shining, scene),
+            Some(light) => shine(reading, found, dressed, light, *shape, &mut shining, scene),
             None => dressed.materials.clone(),
         };
         let (name, place, asset) = names.of(reading, found);
-        let takes_color = dressed.takes_color && scene.meshes[*mesh as usize].colors.is_none();
-        let instance = InstanceDesc {
+        let has_colors = match *shape {
+            ShapeRef::Mesh(i) => scene.meshes[i as usize].colors.is_some(),
+            ShapeRef::Rounds(i) => scene.rounds[i as usize].colors.is_some(),
+        };
+        let takes_color = dressed.takes_color && !has_colors;
+        scene.instances.push(InstanceDesc {
             name,
             place,
             asset,
-            mesh: *mesh,
+            shape: *shape,
             transform: found.pose.world,
             motion: moving(times, &found.pose),
             materials,
@@ -61,16 +72,7 @@ pub(super) fn place(
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
-        };
-        if copies.is_empty() {
-            scene.instances.push(instance);
-            continue;
-        }
-        for copy in copies {
-            let motion = instance.motion.iter().map(|m| Motion { time: m.time, value: m.value * *copy }).collect();
-            let transform = instance.transform * *copy;
-            scene.instances.push(InstanceDesc { transform, motion, ..instance.clone() });
-        }
+        });
     }
 }
 
@@ -80,7 +82,7 @@ fn shine(
     found: &Found,
     dressed: &Dressed,
     light: &ShapeLight,
-    mesh: u32,
+    shape: ShapeRef,
     known: &mut HashMap<(*const Dressed, *const ShapeLight), Vec<Option<u32>>>,
     scene: &mut SceneDesc,
 ) -> Vec<Option<u32>> {
@@ -94,7 +96,7 @@ fn shine(
         let bound = slot.and_then(|slot| scene.materials.get(slot as usize));
         let material = light.material(bound, || {
             sized.set(true);
-            scene.meshes.get(mesh as usize).map_or(0.0, |mesh| light::area(reading, mesh, &found.pose.world))
+            light::area(reading, shape, scene, &found.pose.world)
         });
         scene.materials.push(material);
         materials.push(Some(scene.materials.len() as u32 - 1));

@@ -162,5 +162,6 @@ fn add_camera(reading: &Reading<'_>, placed: &Placed, scene: &mut SceneDesc) {
 fn moves(scene: &SceneDesc) -> bool {
     scene.instances.iter().any(|instance| !instance.motion.is_empty())
         || scene.meshes.iter().any(|mesh| !mesh.motion.is_empty())
+        || scene.rounds.iter().any(|rounds| !rounds.motion.is_empty())
         || scene.cameras.iter().any(|camera| !camera.motion.is_empty())
 }

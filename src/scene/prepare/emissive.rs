@@ -1,13 +1,18 @@
-//! Emissive meshes as lights.
+//! Emissive shapes as lights.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::light::{Emission, MeshEmitters, MeshLight};
-use crate::math::Rgb;
-use crate::scene::material::Opacity;
-use crate::scene::{Instance, Material};
-use crate::shape::Mesh;
+use crate::camera::Camera;
+use crate::desc::graph::Value;
+use crate::light::{AnyEmitter, Emission, MeshEmitters, MeshLight, RoundEmitters, RoundLight};
+use crate::math::{DVec3, Rgb, Vec3};
+use crate::scene::asked::Asked;
+use crate::scene::material::{Opacity, Programs, Varying, rgb_of, single};
+use crate::scene::spot::{Around, Spot};
+use crate::scene::{Instance, Interaction, Material};
+use crate::shape::Shape;
+use crate::texture::graph::{Asks, Program};
 use crate::texture::{Texture, TextureRef};
 
 /// Share of the mean of a whole texture that every triangle with it counts for at least: what the few
@@ -17,19 +22,45 @@ const OF_TEXTURE: f32 = 1e-4;
 /// What the mean of a texture with any light counts for at least: coarse levels of eight bits lose it.
 const LEAST_MEAN: f32 = 1e-3;
 
-/// Emitted radiance of a mesh: of a surface that is partly open what its rays get on the mean.
+/// Emitted radiance of a shape: of a surface that is partly open what its rays get on the mean.
 #[derive(Debug)]
 struct MaterialEmission {
-    mesh: Arc<Mesh>,
+    shape: Shape,
     textures: Arc<Vec<Texture>>,
     /// By material slot.
     slots: Box<[Slot]>,
     /// Of the instance's colour, where the mesh has none.
     alpha: f32,
+    /// Where some slot is a value of a graph.
+    owner: Option<Owner>,
+}
+
+/// What graphs ask of the one object whose emission this is.
+#[derive(Debug)]
+struct Owner {
+    instance: Instance,
+    index: u32,
+    asked: Arc<Asked>,
+    camera: Camera,
+    origin: DVec3,
+}
+
+/// What all emissive meshes share.
+pub struct Shared<'a> {
+    /// All materials.
+    pub materials: &'a [Material],
+    /// Their textures.
+    pub textures: &'a Arc<Vec<Texture>>,
+    /// What graphs ask of meshes and objects.
+    pub asked: &'a Arc<Asked>,
+    /// The camera.
+    pub camera: Camera,
+    /// World position of render space's origin.
+    pub origin: DVec3,
 }
 
 /// Emission of a material.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Slot {
     factor: Rgb,
     texture: Option<TextureRef>,
@@ -39,64 +70,128 @@ struct Slot {
     alpha_texture: Option<(TextureRef, u8)>,
     /// Least mean radiance of a triangle whose emission varies.
     least: Rgb,
+    /// The material's graphs, where emission or alpha are values of them.
+    programs: Option<Arc<Programs>>,
+}
+
+impl Slot {
+    fn emission_program(&self) -> Option<&Program> {
+        self.programs.as_ref()?.emission.as_ref()
+    }
+
+    fn alpha_program(&self) -> Option<&Program> {
+        self.programs.as_ref()?.opacity.as_ref()
+    }
+
+    /// True where what it emits goes by the path that finds it, which a point on a light does not know:
+    /// rays alone find it then.
+    fn asks_path(&self) -> bool {
+        self.asks(|asks| asks.path)
+    }
+
+    /// True where it goes by the direction that it is seen from.
+    fn asks_view(&self) -> bool {
+        self.asks(|asks| asks.view)
+    }
+
+    fn asks(&self, what: fn(Asks) -> bool) -> bool {
+        [self.emission_program(), self.alpha_program()].into_iter().flatten().any(|program| what(program.asks()))
+    }
 }
 
 impl MaterialEmission {
     fn slot(&self, triangle: u32) -> &Slot {
-        &self.slots[self.mesh.slot(triangle).min(self.slots.len() - 1)]
+        &self.slots[self.shape.slot(triangle).min(self.slots.len() - 1)]
     }
 
     /// The texture behind `input`, averaged over `share` of the width of the triangle.
     fn look_up(&self, input: TextureRef, triangle: u32, barycentrics: [f32; 2], share: f32) -> [f32; 4] {
-        let Some(uv) = self.mesh.uv(input.uv_set, triangle, barycentrics) else { return [1.0; 4] };
-        let width = if share > 0.0 { (0.5 * self.mesh.uv_area(input.uv_set, triangle)).sqrt() } else { 0.0 };
+        let Some(uv) = self.shape.uv(input.uv_set, triangle, barycentrics) else { return [1.0; 4] };
+        let width = if share > 0.0 { (0.5 * self.shape.uv_size(input.uv_set, triangle)).sqrt() } else { 0.0 };
         input.lookup(&self.textures, uv.to_array(), share * width)
     }
 
-    fn emitted(&self, triangle: u32, barycentrics: [f32; 2], share: f32) -> Rgb {
-        let Slot { factor, texture, .. } = *self.slot(triangle);
+    /// The first value of `program` at a point that is seen from `wo`.
+    fn value(&self, program: &Program, triangle: u32, barycentrics: [f32; 2], wo: Vec3) -> Option<Value> {
+        let Owner { instance, index, asked, camera, origin } = self.owner.as_ref()?;
+        let it = Interaction::on(&self.shape, instance, triangle, barycentrics, wo);
+        let (shape, textures) = (&self.shape, &self.textures);
+        let around = Around { shape, instance, index: *index, asked, textures, camera, origin: *origin };
+        Some(Spot { around, it: &it }.run(program)[0])
+    }
+
+    fn emitted(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3) -> Rgb {
+        let slot = self.slot(triangle);
+        let Slot { factor, texture, .. } = *slot;
+        if let Some([r, g, b, _]) =
+            slot.emission_program().and_then(|program| self.value(program, triangle, barycentrics, wo))
+        {
+            return (factor * rgb_of([r, g, b])).map(|c| c.max(0.0));
+        }
         let Some(input) = texture else { return factor };
         let [r, g, b, _] = self.look_up(input, triangle, barycentrics, share);
         factor * Rgb::new(r, g, b)
     }
 
-    fn alpha(&self, triangle: u32, barycentrics: [f32; 2], share: f32) -> f32 {
-        let Slot { alpha, alpha_texture, .. } = *self.slot(triangle);
-        let texel = alpha_texture
-            .map_or(1.0, |(input, channel)| self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]);
-        alpha * texel * self.mesh.color(triangle, barycentrics).map_or(self.alpha, |color| color[3])
+    fn alpha(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3) -> f32 {
+        let slot = self.slot(triangle);
+        let Slot { alpha, alpha_texture, .. } = *slot;
+        let value = slot.alpha_program().and_then(|program| self.value(program, triangle, barycentrics, wo));
+        let texel = value.map(|value| single(value[0])).unwrap_or_else(|| {
+            alpha_texture.map_or(1.0, |(input, channel)| {
+                self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]
+            })
+        });
+        alpha * texel * self.shape.color(triangle, barycentrics).map_or(self.alpha, |color| color[3])
     }
 
     fn is_constant(&self, triangle: u32) -> bool {
-        let Slot { texture, opacity, alpha_texture, .. } = self.slot(triangle);
-        let is_evenly_open = alpha_texture.is_none() && self.mesh.colors.is_none();
+        let slot = self.slot(triangle);
+        let Slot { texture, opacity, alpha_texture, .. } = slot;
+        if slot.programs.is_some() {
+            return false;
+        }
+        let is_evenly_open = alpha_texture.is_none() && !self.shape.has_colors();
         texture.is_none() && (*opacity == Opacity::Opaque || is_evenly_open)
     }
 }
 
 impl Emission for MaterialEmission {
     fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb {
-        let emitted = self.emitted(triangle, uv, 0.0);
+        self.radiance_towards(triangle, uv, self.normal(triangle))
+    }
+
+    fn radiance_towards(&self, triangle: u32, uv: [f32; 2], wo: Vec3) -> Rgb {
+        let emitted = self.emitted(triangle, uv, 0.0, wo);
         match self.slot(triangle).opacity {
             Opacity::Opaque => emitted,
-            opacity => emitted * opacity.of(self.alpha(triangle, uv, 0.0)),
+            opacity => emitted * opacity.of(self.alpha(triangle, uv, 0.0, wo)),
         }
     }
 
-    /// The mip level that the triangle's size in UV calls for, and points around it. Seen from so far a
-    /// mask is as open as a blend of its alpha.
+    /// The mip level that the triangle's size in UV calls for, and points around it; of a graph the points
+    /// alone, seen from both sides. Seen from so far a mask is as open as a blend of its alpha.
     fn mean(&self, triangle: u32) -> Rgb {
         let third = 1.0 / 3.0;
-        let &Slot { opacity, least, .. } = self.slot(triangle);
+        let slot = self.slot(triangle);
+        let &Slot { opacity, least, .. } = slot;
         if self.is_constant(triangle) {
             return self.radiance(triangle, [third, third]);
+        }
+        if slot.asks_path() {
+            return Rgb::BLACK;
         }
         if least.is_black() {
             return least;
         }
-        let at = |uv: [f32; 2], share: f32| match opacity {
-            Opacity::Opaque => self.emitted(triangle, uv, share),
-            _ => self.emitted(triangle, uv, share) * self.alpha(triangle, uv, share).clamp(0.0, 1.0),
+        let seen = |uv: [f32; 2], share: f32, wo: Vec3| match opacity {
+            Opacity::Opaque => self.emitted(triangle, uv, share, wo),
+            _ => self.emitted(triangle, uv, share, wo) * self.alpha(triangle, uv, share, wo).clamp(0.0, 1.0),
+        };
+        let n = self.normal(triangle);
+        let at = |uv: [f32; 2], share: f32| match slot.asks_view() {
+            false => seen(uv, share, n),
+            true => (seen(uv, share, n) + seen(uv, share, -n)) * 0.5,
         };
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];
         let around: Rgb = points.iter().map(|&uv| at(uv, 0.5)).sum();
@@ -104,49 +199,81 @@ impl Emission for MaterialEmission {
     }
 }
 
-/// The emitters of a mesh under a list of materials and the bits of an alpha; `None` where nothing is emitted.
-type Known = HashMap<(u32, Box<[u32]>, u32), Option<Arc<MeshEmitters>>>;
+impl MaterialEmission {
+    /// Unit normal of a triangle in the render space of its owner; any direction where there is none to ask.
+    fn normal(&self, triangle: u32) -> Vec3 {
+        let on = |owner: &Owner| Interaction::on(&self.shape, &owner.instance, triangle, [0.25; 2], Vec3::Z).ng;
+        self.owner.as_ref().map_or(Vec3::Z, on)
+    }
+}
 
-/// Emissive meshes as lights, one by one: instances of the same mesh with the same materials share
+/// The emitters of a shape.
+#[derive(Clone)]
+enum Emitters {
+    Mesh(Arc<MeshEmitters>),
+    Rounds(Arc<RoundEmitters>),
+}
+
+/// The emitters of a shape under a list of materials and the bits of an alpha, and of which object where they
+/// are not those of all; `None` where nothing is emitted.
+type Known = HashMap<(u32, Box<[u32]>, u32, Option<u32>), Option<Emitters>>;
+
+/// Emissive shapes as lights, one by one: instances of the same shape with the same materials share
 /// their emitters.
 pub struct Emissive<'a> {
-    materials: &'a [Material],
-    textures: &'a Arc<Vec<Texture>>,
+    shared: &'a Shared<'a>,
     known: Known,
 }
 
 impl<'a> Emissive<'a> {
-    /// For instances with `materials`, textured by `textures`.
-    pub fn new(materials: &'a [Material], textures: &'a Arc<Vec<Texture>>) -> Self {
-        Self { materials, textures, known: HashMap::new() }
+    /// For the instances of a scene.
+    pub fn new(shared: &'a Shared<'a>) -> Self {
+        Self { shared, known: HashMap::new() }
     }
 
-    /// The light that the emissive triangles of `instance` form; `None` where it has none.
-    pub fn light(&mut self, instance: &Instance, mesh: &Arc<Mesh>) -> Option<MeshLight> {
-        let (materials, textures) = (self.materials, self.textures);
+    /// The light that the emissive primitives of `instance`, whose index is `index`, form; `None` where it
+    /// has none.
+    pub fn light(&mut self, instance: &Instance, index: u32, shape: &Shape) -> Option<AnyEmitter> {
+        let Shared { materials, textures, asked, camera, origin } = *self.shared;
+        let slots: Box<[Slot]> = instance.materials.iter().map(|&m| slot(&materials[m as usize], textures)).collect();
+        // Graphs may ask where the object is.
+        let owner = slots.iter().any(|slot| slot.programs.is_some()).then_some(index);
         let alpha = instance.color.map_or(1.0, |color| color[3]);
-        let key = (instance.mesh, instance.materials.clone(), alpha.to_bits());
+        let key = (instance.shape, instance.materials.clone(), alpha.to_bits(), owner);
         let emitters = self.known.entry(key).or_insert_with(|| {
-            let slots = instance.materials.iter().map(|&m| slot(&materials[m as usize], textures)).collect();
-            let emission = MaterialEmission { mesh: mesh.clone(), textures: textures.clone(), slots, alpha };
-            MeshEmitters::new(mesh.clone(), Arc::new(emission)).map(Arc::new)
+            let owner =
+                owner.map(|index| Owner { instance: instance.clone(), index, asked: asked.clone(), camera, origin });
+            let (shape, textures) = (shape.clone(), textures.clone());
+            let emission = Arc::new(MaterialEmission { shape: shape.clone(), textures, slots, alpha, owner });
+            match shape {
+                Shape::Mesh(mesh) => MeshEmitters::new(mesh, emission).map(|e| Emitters::Mesh(Arc::new(e))),
+                Shape::Rounds(rounds) => RoundEmitters::new(rounds, emission).map(|e| Emitters::Rounds(Arc::new(e))),
+            }
         });
-        MeshLight::new(emitters.clone()?, instance.object_to_render)
+        match emitters.clone()? {
+            Emitters::Mesh(emitters) => MeshLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
+            Emitters::Rounds(emitters) => RoundLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
+        }
     }
 }
 
 fn slot(material: &Material, textures: &[Texture]) -> Slot {
     let factor = if material.emits() { material.emission.factor } else { Rgb::BLACK };
-    let input = |i: u8| material.inputs[usize::from(i)];
-    let texture = material.emission.texture.map(input);
-    let whole = texture.map_or(Rgb::WHITE, |input| mean_of(&textures[input.texture as usize]));
+    let texture = |varying: Varying| match varying {
+        Varying::Texture(i, channel) => Some((material.inputs[usize::from(i)], channel)),
+        Varying::No | Varying::Graph(_) => None,
+    };
+    let (emission, alpha_texture) = (texture(material.emission.varying), texture(material.alpha.varying));
+    let whole = emission.map_or(Rgb::WHITE, |(input, _)| mean_of(&textures[input.texture as usize]));
+    let asked = |programs: &&Arc<Programs>| programs.emission.is_some() || programs.opacity.is_some();
     Slot {
         factor,
-        texture,
+        texture: emission.map(|(input, _)| input),
         opacity: material.opacity,
         alpha: material.alpha.factor,
-        alpha_texture: material.alpha.texture.map(|(i, channel)| (input(i), channel)),
+        alpha_texture,
         least: factor * whole * OF_TEXTURE,
+        programs: material.programs.as_ref().filter(|_| material.emits()).filter(asked).cloned(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Meshes moved to the middle of their box, instances to render space, and the tree over them.
+//! Shapes moved to the middle of their box, instances to render space, and the tree over them.
 
 use std::sync::Arc;
 
@@ -6,17 +6,17 @@ use rayon::prelude::*;
 
 use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
-use crate::desc::{self, InstanceDesc, MeshDesc, SceneDesc};
+use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::Warnings;
 use crate::math::{Affine3A, Bounds, DAffine3, DVec3, Mat3A, Vec2, Vec3};
 use crate::scene::{Instance, Material, mask};
-use crate::shape::{self, Mesh};
+use crate::shape::{self, Mesh, Rounds, Shape};
 
 /// Everything that has a place.
 pub struct Geometry {
-    /// Meshes, as in the `SceneDesc`.
-    pub meshes: Vec<Arc<Mesh>>,
-    /// Placed meshes.
+    /// Meshes, then strands and balls, as in the `SceneDesc`.
+    pub shapes: Vec<Shape>,
+    /// Placed shapes.
     pub instances: Vec<Instance>,
     /// For each of `instances`, its index in the `SceneDesc`.
     pub placed: Vec<u32>,
@@ -24,7 +24,7 @@ pub struct Geometry {
     pub bvh: Bvh,
 }
 
-/// Prepares all meshes that are placed, in parallel.
+/// Prepares all shapes that are placed, in parallel.
 pub fn prepare(
     desc: &SceneDesc,
     origin: DVec3,
@@ -32,28 +32,33 @@ pub fn prepare(
     links: &Links,
     warnings: &mut Warnings,
 ) -> Geometry {
-    let mut used = vec![false; desc.meshes.len()];
+    let index = |shape: ShapeRef| match shape {
+        ShapeRef::Mesh(i) => i as usize,
+        ShapeRef::Rounds(i) => desc.meshes.len() + i as usize,
+    };
+    let mut used = vec![false; desc.meshes.len() + desc.rounds.len()];
     for instance in &desc.instances {
-        used[instance.mesh as usize] = true;
+        used[index(instance.shape)] = true;
     }
-    let (meshes, blases): (Vec<_>, Vec<_>) = desc
-        .meshes
-        .par_iter()
-        .zip(&used)
-        .map(|(mesh, used)| {
-            let mesh = if *used { prepare_mesh(mesh) } else { Mesh::default() };
-            let blas = Blas::build(&mesh.points, &mesh.triangles);
-            (Arc::new(mesh), Arc::new(blas))
-        })
-        .unzip();
+    let meshes = desc.meshes.par_iter().zip(&used).map(|(mesh, used)| {
+        let mesh = if *used { prepare_mesh(mesh) } else { Mesh::default() };
+        let blas = Blas::build(&mesh.points, &mesh.triangles);
+        (Shape::Mesh(Arc::new(mesh)), Arc::new(blas))
+    });
+    let rounds = desc.rounds.par_iter().zip(&used[desc.meshes.len()..]).map(|(rounds, used)| {
+        let rounds = if *used { prepare_rounds(rounds) } else { Rounds::default() };
+        let blas = Blas::rounds(&rounds.balls, rounds.segments.as_deref());
+        (Shape::Rounds(Arc::new(rounds)), Arc::new(blas))
+    });
+    let (shapes, blases): (Vec<_>, Vec<_>) = meshes.chain(rounds).unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
     for (i, instance) in desc.instances.iter().enumerate() {
-        let mesh = &meshes[instance.mesh as usize];
-        if mesh.triangles.is_empty() {
+        let shape = index(instance.shape);
+        if shapes[shape].is_empty() {
             continue;
         }
-        let Some(mut prepared) = place(instance, mesh, origin, default_material) else {
+        let Some(mut prepared) = place(instance, shape as u32, &shapes[shape], origin, default_material) else {
             warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
             continue;
         };
@@ -61,23 +66,40 @@ pub fn prepare(
         let emits = prepared.materials.iter().any(|&m| materials[m as usize].emits() || materials[m as usize].unlit);
         prepared.receiver_class = links.receiver_class(i);
         boxes.push(bvh::Instance {
-            blas: instance.mesh,
+            blas: shape as u32,
             object_to_render: prepared.object_to_render,
             mask: mask::of(instance.visibility, cutout, emits, links.blocker_class(i)),
         });
         instances.push(prepared);
         placed.push(i as u32);
     }
-    Geometry { meshes, instances, placed, bvh: Bvh::build(blases, boxes) }
+    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes) }
+}
+
+/// The middle of the box of `points`, and the points relative to it.
+fn centered(points: &[[f32; 3]]) -> (DVec3, impl Iterator<Item = Vec3>) {
+    let bounds = Bounds::of_points(points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
+    let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
+    (center, points.iter().map(move |p| (DVec3::from(p.map(f64::from)) - center).as_vec3()))
+}
+
+fn prepare_rounds(desc: &RoundsDesc) -> Rounds {
+    let (center, points) = centered(&desc.points);
+    Rounds {
+        center,
+        balls: points.zip(&desc.radii).map(|(p, &radius)| [p.x, p.y, p.z, radius]).collect(),
+        segments: desc.segments(),
+        uvs: desc.uvs.iter().map(|set| set.iter().map(|&uv| Vec2::from(uv)).collect()).collect(),
+        colors: desc.colors.clone(),
+        material_slots: desc.segment_slots(),
+    }
 }
 
 fn prepare_mesh(desc: &MeshDesc) -> Mesh {
-    let bounds = Bounds::of_points(desc.points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
-    let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
-    let points: Vec<Vec3> = desc.points.iter().map(|p| (DVec3::from(p.map(f64::from)) - center).as_vec3()).collect();
+    let (center, points) = centered(&desc.points);
     Mesh {
         center,
-        points,
+        points: points.collect(),
         triangles: desc.triangles.clone(),
         normals: desc.normals.as_ref().map(|n| convert(n, |&n| Vec3::from(n))),
         uvs: desc.uvs.iter().map(|uv| convert(uv, |&uv| Vec2::from(uv))).collect(),
@@ -87,7 +109,8 @@ fn prepare_mesh(desc: &MeshDesc) -> Mesh {
     }
 }
 
-fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::Attribute<U> {
+/// Values of the description as the mesh has them.
+pub fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::Attribute<U> {
     match attribute {
         desc::Attribute::Point(values) => shape::Attribute::Point(values.iter().map(f).collect()),
         desc::Attribute::Corner(values) => shape::Attribute::Corner(values.iter().map(f).collect()),
@@ -95,8 +118,8 @@ fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> shape::
 }
 
 /// `desc` in render space; `None` where its transform can't be undone or leaves the range of `f32`.
-fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32) -> Option<Instance> {
-    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(mesh.center);
+fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_material: u32) -> Option<Instance> {
+    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(shape.center());
     let inverse = to_render.matrix3.inverse();
     let object_to_render = Affine3A::from_cols(
         to_render.matrix3.x_axis.as_vec3a(),
@@ -114,7 +137,7 @@ fn place(desc: &InstanceDesc, mesh: &Mesh, origin: DVec3, default_material: u32)
     let slots = desc.materials.iter().map(|m| m.unwrap_or(default_material));
     let materials: Box<[u32]> = if desc.materials.is_empty() { [default_material].into() } else { slots.collect() };
     Some(Instance {
-        mesh: desc.mesh,
+        shape: index,
         object_to_render,
         normal_to_render: Mat3A::from_cols(
             normals.x_axis.as_vec3a(),

@@ -1,29 +1,24 @@
-//! Lamps, domes and emissive meshes as lights in render space, with the rules of each.
+//! Lamps, domes and emissive shapes as lights in render space, with the rules of each.
 
 use std::sync::Arc;
 
-use super::emissive::Emissive;
+use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
 use super::lamp;
 use super::links::Links;
 use crate::desc::{LightDesc, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
 use crate::light::{Light, Rules, Seen};
-use crate::math::DVec3;
-use crate::scene::Material;
-use crate::texture::Texture;
 
 /// Every light of the scene, `extra` included; instances learn which light they are. `groups` are
 /// the light groups that passes ask for.
 pub fn prepare(
     desc: &SceneDesc,
     extra: Option<&LightDesc>,
-    origin: DVec3,
     links: &Links,
     groups: &[Arc<str>],
     geometry: &mut Geometry,
-    materials: &[Material],
-    textures: &Arc<Vec<Texture>>,
+    shared: &Shared<'_>,
     warnings: &mut Warnings,
 ) -> Vec<Light> {
     let rules = |of: &LightLinks, visibility: Visibility| Rules {
@@ -39,22 +34,23 @@ pub fn prepare(
     };
     let mut lights = Vec::new();
     for light in desc.lights.iter().chain(extra) {
-        if let Some(emitter) = lamp::prepare(desc, light, origin, warnings) {
+        if let Some(emitter) = lamp::prepare(desc, light, shared.origin, warnings) {
             lights.push(Light { emitter, rules: rules(&light.links, light.visibility) });
         }
     }
-    let mut emissive = Emissive::new(materials, textures);
-    for (instance, &placed) in geometry.instances.iter_mut().zip(&geometry.placed) {
+    let materials = shared.materials;
+    let mut emissive = Emissive::new(shared);
+    for (index, (instance, &placed)) in geometry.instances.iter_mut().zip(&geometry.placed).enumerate() {
         let of = &desc.instances[placed as usize];
         if !instance.materials.iter().any(|&m| materials[m as usize].emits()) {
             continue;
         }
         let rules = rules(&of.links, of.visibility);
         instance.rules = Some(Box::new(rules.clone()));
-        let mesh = &geometry.meshes[instance.mesh as usize];
-        if let Some(light) = emissive.light(instance, mesh) {
+        let shape = &geometry.shapes[instance.shape as usize];
+        if let Some(emitter) = emissive.light(instance, index as u32, shape) {
             instance.light = Some(lights.len() as u32);
-            lights.push(Light { emitter: light.into(), rules });
+            lights.push(Light { emitter, rules });
         }
     }
     lights

@@ -1,45 +1,62 @@
-//! Materials with their constants folded, and the textures that are left.
+//! Materials with their constants folded, and the textures and programs that are left.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::graphs;
 use super::mend::Mended;
-use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc};
+use crate::desc::graph::{Function, Graph, Leaf, Value, ValueId};
+use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureTransform};
 use crate::error::Warnings;
 use crate::math::Rgb;
 use crate::scene::Material;
+use crate::scene::asked::Names;
 use crate::scene::effects;
-use crate::scene::material::{ColorInput, NormalInput, Opacity, ScalarInput};
+use crate::scene::material::{ColorInput, NormalInput, Opacity, Programs, ScalarInput, Varying, rgb_of, single};
 use crate::settings::Settings;
+use crate::texture::graph::Program;
 use crate::texture::{Image, Texture, TextureRef};
 
-/// Materials as in `desc`, with the default one added at the end, and every texture of `desc` that
-/// one of them looks up. Texels move out of `desc` into the textures.
-pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warnings) -> (Vec<Material>, Vec<Texture>) {
+/// Materials, and what they share.
+pub struct Materials {
+    /// As in the `SceneDesc`, with the default one added at the end.
+    pub list: Vec<Material>,
+    /// Every texture that one of them looks up.
+    pub textures: Vec<Texture>,
+    /// Attributes that their programs ask for.
+    pub names: Names,
+}
+
+/// The materials of `desc`. Texels move out of `desc` into the textures.
+pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warnings) -> Materials {
     let mut used = vec![false; desc.materials.len()];
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
     let images = prepare_images(desc, &used, warnings);
     let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
-    let mut builder = Builder { desc, settings, textures };
+    let mut builder = Builder { desc, settings, textures, names: Names::default() };
     let fallback = MaterialDesc::default();
     let materials = desc.materials.iter().zip(&used).map(|(material, used)| (material, *used));
-    let materials = materials
+    let list = materials
         .chain([(&fallback, true)])
         // A material that nothing uses keeps its index, and none of its textures.
         .map(|(material, used)| builder.material(if used { material } else { &fallback }, warnings))
         .collect();
-    (materials, builder.textures.list)
+    Materials { list, textures: builder.textures.list, names: builder.names }
 }
 
 /// Pyramids of the images that materials in use look up, in parallel.
 fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) -> Vec<Option<Arc<Image>>> {
     let mut wanted = vec![false; desc.images.len()];
     let materials = desc.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material));
-    for texture in materials.flat_map(MaterialDesc::textures) {
-        wanted[desc.textures[texture.texture as usize].image as usize] = true;
+    for material in materials {
+        let plain = material.textures().map(|texture| texture.texture);
+        for texture in plain.chain(graphs::textures(material)) {
+            wanted[desc.textures[texture as usize].image as usize] = true;
+        }
     }
     // Texels that light are still needed.
     let mut lights = vec![false; desc.images.len()];
@@ -75,7 +92,7 @@ fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) 
 }
 
 /// Textures of the scene, made when the first material asks.
-struct Textures<'a> {
+pub struct Textures<'a> {
     desc: &'a SceneDesc,
     images: Vec<Option<Arc<Image>>>,
     /// New index of each texture that is used.
@@ -89,12 +106,13 @@ impl Textures<'_> {
     }
 
     /// The one value of a texture whose texels are all the same, white for one without image.
-    fn constant(&self, texture: &desc::TextureRef) -> Option<[f32; 4]> {
+    pub fn constant(&self, texture: &desc::TextureRef) -> Option<[f32; 4]> {
         let Some(image) = self.image(texture) else { return Some([1.0; 4]) };
         Texture::new(image.clone(), &self.desc.textures[texture.texture as usize]).constant()
     }
 
-    fn input(&mut self, texture: &desc::TextureRef) -> Option<TextureRef> {
+    /// The texture of the scene that a use of one of the description is of.
+    pub fn input(&mut self, texture: &desc::TextureRef) -> Option<TextureRef> {
         let image = self.image(texture)?.clone();
         let index = self.index[texture.texture as usize].get_or_insert_with(|| {
             self.list.push(Texture::new(image, &self.desc.textures[texture.texture as usize]));
@@ -108,88 +126,206 @@ struct Builder<'a> {
     desc: &'a SceneDesc,
     settings: &'a Settings,
     textures: Textures<'a>,
+    names: Names,
+}
+
+/// The inputs of one material in the making.
+struct Inputs<'m> {
+    desc: &'m MaterialDesc,
+    /// The material's graph, with what plain textures on top of its values make of them.
+    graph: Cow<'m, Graph>,
+    textures: Vec<TextureRef>,
+    /// Values that the program in the making has to give.
+    values: Vec<ValueId>,
+}
+
+impl Inputs<'_> {
+    /// `value` times `texture`, as a value.
+    fn textured(&mut self, value: ValueId, texture: &desc::TextureRef, place: Option<u8>) -> ValueId {
+        let graph = self.graph.to_mut();
+        let TextureTransform([u, v]) = texture.transform;
+        let rows = [[u[0], u[1], 0.0, u[2]], [v[0], v[1], 0.0, v[2]], [0.0; 4]];
+        let uv = graph.leaf(Leaf::Uv(texture.uv_set));
+        let uv = graph.apply(Function::Affine(Box::new(rows)), &[uv]);
+        let texel = graph.image(texture.texture, uv);
+        let texel = place.map_or(texel, |place| graph.place(texel, place));
+        graph.multiply(value, texel)
+    }
 }
 
 impl Builder<'_> {
-    fn input(&mut self, inputs: &mut Vec<TextureRef>, texture: &desc::TextureRef) -> Option<u8> {
+    fn plain(&mut self, inputs: &mut Inputs<'_>, texture: &desc::TextureRef) -> Option<u8> {
         let input = self.textures.input(texture)?;
-        let index = inputs.iter().position(|known| *known == input).unwrap_or_else(|| {
-            inputs.push(input);
-            inputs.len() - 1
+        let list = &mut inputs.textures;
+        let index = list.iter().position(|known| *known == input).unwrap_or_else(|| {
+            list.push(input);
+            list.len() - 1
         });
         Some(index as u8)
     }
 
-    fn color(&mut self, inputs: &mut Vec<TextureRef>, input: &desc::ColorInput) -> ColorInput {
+    /// What the program in the making will give as `value`, or what it is everywhere.
+    fn value(&mut self, inputs: &mut Inputs<'_>, value: ValueId) -> Result<Varying, Value> {
+        let known = graphs::constant(inputs.desc, &inputs.graph, value, &mut self.textures, &mut self.names);
+        if let Some(known) = known {
+            return Err(known);
+        }
+        inputs.values.push(value);
+        Ok(Varying::Graph(inputs.values.len() as u8 - 1))
+    }
+
+    fn color(&mut self, inputs: &mut Inputs<'_>, input: &desc::ColorInput) -> ColorInput {
         let factor = Rgb::from(input.factor);
-        let Some(texture) = input.texture.filter(|_| !factor.is_black()) else {
-            return ColorInput { factor, texture: None };
+        let constant = |factor: Rgb| ColorInput { factor, varying: Varying::No };
+        if factor.is_black() {
+            return constant(factor);
+        }
+        let known = input.texture.map(|texture| (texture, self.textures.constant(&texture)));
+        let (factor, texture) = match known {
+            Some((_, Some([r, g, b, _]))) => (factor * Rgb::new(r, g, b), None),
+            Some((texture, None)) => (factor, Some(texture)),
+            None => (factor, None),
         };
-        match self.textures.constant(&texture) {
-            Some([r, g, b, _]) => ColorInput { factor: factor * Rgb::new(r, g, b), texture: None },
-            None => ColorInput { factor, texture: self.input(inputs, &texture) },
+        let value = input.graph.map(|value| match texture {
+            Some(texture) => inputs.textured(value, &texture, None),
+            None => value,
+        });
+        match (value, texture) {
+            (Some(value), _) => match self.value(inputs, value) {
+                Ok(varying) => ColorInput { factor, varying },
+                Err([r, g, b, _]) => constant(factor * rgb_of([r, g, b])),
+            },
+            (None, Some(texture)) => {
+                let varying = self.plain(inputs, &texture).map_or(Varying::No, |i| Varying::Texture(i, 0));
+                ColorInput { factor, varying }
+            }
+            (None, None) => constant(factor),
         }
     }
 
-    fn scalar(&mut self, inputs: &mut Vec<TextureRef>, input: &desc::ScalarInput) -> ScalarInput {
+    fn scalar(&mut self, inputs: &mut Inputs<'_>, input: &desc::ScalarInput) -> ScalarInput {
         let factor = input.factor as f32;
-        let Some((texture, channel)) = input.texture.filter(|_| factor != 0.0) else {
-            return ScalarInput { factor, texture: None };
-        };
-        let channel = match channel {
+        let constant = |factor: f32| ScalarInput { factor, varying: Varying::No };
+        if factor == 0.0 {
+            return constant(factor);
+        }
+        let place = |channel: Channel| match channel {
             Channel::R => 0_u8,
             Channel::G => 1,
             Channel::B => 2,
             Channel::A => 3,
         };
-        match self.textures.constant(&texture) {
-            Some(texel) => ScalarInput { factor: factor * texel[usize::from(channel)], texture: None },
-            None => ScalarInput { factor, texture: self.input(inputs, &texture).map(|input| (input, channel)) },
+        let known = input.texture.map(|(texture, channel)| (texture, place(channel), self.textures.constant(&texture)));
+        let (factor, texture) = match known {
+            Some((_, place, Some(texel))) => (factor * texel[usize::from(place)], None),
+            Some((texture, place, None)) => (factor, Some((texture, place))),
+            None => (factor, None),
+        };
+        let value = input.graph.map(|value| match texture {
+            Some((texture, place)) => inputs.textured(value, &texture, Some(place)),
+            None => value,
+        });
+        match (value, texture) {
+            (Some(value), _) => match self.value(inputs, value) {
+                Ok(varying) => ScalarInput { factor, varying },
+                Err(known) => constant(factor * single(known[0])),
+            },
+            (None, Some((texture, place))) => {
+                let varying = self.plain(inputs, &texture).map_or(Varying::No, |i| Varying::Texture(i, place));
+                ScalarInput { factor, varying }
+            }
+            (None, None) => constant(factor),
         }
     }
 
-    fn normal(&mut self, normal: desc::NormalInput) -> Option<NormalInput> {
-        let desc::NormalInput::Map { texture, scale } = normal else { return None };
-        if scale == 0.0 || self.textures.constant(&texture).is_some() {
+    /// The program for the values that inputs have asked for since the last one.
+    fn program(&mut self, inputs: &mut Inputs<'_>) -> Option<Program> {
+        let values = std::mem::take(&mut inputs.values);
+        if values.is_empty() {
             return None;
         }
-        Some(NormalInput { input: self.textures.input(&texture)?, scale: scale as f32 })
+        Some(graphs::program(inputs.desc, &inputs.graph, &values, &mut self.textures, &mut self.names))
+    }
+
+    /// A normal map; of a graph its program follows.
+    fn normal(&mut self, inputs: &mut Inputs<'_>, normal: desc::NormalInput) -> Option<NormalInput> {
+        match normal {
+            desc::NormalInput::Map { texture, scale } => {
+                if scale == 0.0 || self.textures.constant(&texture).is_some() {
+                    return None;
+                }
+                Some(NormalInput { input: self.textures.input(&texture)?, scale: scale as f32 })
+            }
+            desc::NormalInput::Graph(value) => {
+                inputs.values.push(value);
+                None
+            }
+        }
     }
 
     fn material(&mut self, desc: &MaterialDesc, warnings: &mut Warnings) -> Material {
         warn_of_effects_to_come(desc, warnings);
-        let mut inputs = Vec::new();
         let mut mended = Mended::default();
         let emission =
             desc::ColorInput { factor: emission(desc, &mut mended).to_array().map(f64::from), ..desc.emission };
         mended.tell_at(&desc.place, warnings);
         let volume = desc.volume.filter(|v| v.thickness.factor > 0.0);
-        let opaque = effects::is_opaque(self.desc, desc);
+        let graph = Cow::Borrowed(&desc.graph);
+        let inputs = &mut Inputs { desc, graph, textures: Vec::new(), values: Vec::new() };
+        // One question after the other; each has a program of its own. What scatters:
+        let base_color = self.color(inputs, &desc.base_color);
+        let color_alone = inputs.values.clone();
+        let metallic = self.scalar(inputs, &desc.metallic);
+        let roughness = self.scalar(inputs, &desc.roughness);
+        let specular = self.scalar(inputs, &desc.specular);
+        let specular_color = self.color(inputs, &desc.specular_color);
+        let transmission = self.scalar(inputs, &desc.transmission);
+        let surface = self.program(inputs);
+        // What passes:
+        let alpha = self.scalar(inputs, &desc.alpha);
+        let opaque = effects::is_opaque(self.desc, desc)
+            || (alpha.varying == Varying::No
+                && effects::is_opaque_at(self.desc, desc.alpha_mode, f64::from(alpha.factor)));
+        let opacity = self.program(inputs).filter(|_| !opaque);
+        // What is emitted; of an unlit surface its color:
+        let emission = self.color(inputs, &emission);
+        if desc.unlit {
+            inputs.values = color_alone;
+        }
+        let light = self.program(inputs);
+        // Which way it faces:
+        let normal_map = desc.normal.and_then(|normal| self.normal(inputs, normal));
+        let normal = self.program(inputs);
+        // What light reaches it at all:
+        let occlusion = desc
+            .occlusion
+            .filter(|o| self.settings.occlusion_maps && o.factor != 0.0)
+            .filter(|o| o.texture.is_some() || o.graph.is_some())
+            .map(|o| self.scalar(inputs, &o));
+        let programs = Programs { opacity, emission: light, surface, normal, occlusion: self.program(inputs) };
         Material {
-            base_color: self.color(&mut inputs, &desc.base_color),
-            alpha: self.scalar(&mut inputs, &desc.alpha),
+            base_color,
+            alpha,
             opacity: match desc.alpha_mode {
                 _ if opaque => Opacity::Opaque,
                 AlphaMode::Opaque => Opacity::Opaque,
                 AlphaMode::Mask { cutoff } => Opacity::Mask(cutoff as f32),
                 AlphaMode::Blend => Opacity::Blend,
             },
-            metallic: self.scalar(&mut inputs, &desc.metallic),
-            roughness: self.scalar(&mut inputs, &desc.roughness),
+            metallic,
+            roughness,
             ior: if desc.ior.is_finite() && desc.ior > 0.0 { desc.ior as f32 } else { 1.5 },
-            specular: self.scalar(&mut inputs, &desc.specular),
-            specular_color: self.color(&mut inputs, &desc.specular_color),
-            transmission: self.scalar(&mut inputs, &desc.transmission),
+            specular,
+            specular_color,
+            transmission,
             thin: volume.is_none(),
             absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
-            emission: self.color(&mut inputs, &emission),
+            emission,
             unlit: desc.unlit,
-            normal: desc.normal.and_then(|normal| self.normal(normal)),
-            occlusion: desc
-                .occlusion
-                .filter(|o| self.settings.occlusion_maps && o.factor != 0.0 && o.texture.is_some())
-                .map(|o| self.scalar(&mut inputs, &o)),
-            inputs,
+            normal: normal_map,
+            occlusion,
+            programs: programs.any().then(|| Arc::new(programs)),
+            inputs: std::mem::take(&mut inputs.textures),
         }
     }
 }

@@ -104,11 +104,22 @@ pub enum Math {
 }
 
 impl Math {
-    /// The value for a, b, c.
+    /// The value for a, b, c, place by place.
     pub(super) fn eval(self, a: Value, b: Value, c: Value) -> Value {
+        self.lanes(a, b, c)
+    }
+
+    /// The same for numbers.
+    pub fn number(self, a: f64, b: f64, c: f64) -> f64 {
+        let [result] = self.lanes([a], [b], [c]);
+        if result.is_finite() { result + 0.0 } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn lanes<const N: usize>(self, a: [f64; N], b: [f64; N], c: [f64; N]) -> [f64; N] {
         let one = |f: fn(f64) -> f64| a.map(f);
-        let two = |f: fn(f64, f64) -> f64| -> Value { std::array::from_fn(|i| f(a[i], b[i])) };
-        let three = |f: fn(f64, f64, f64) -> f64| -> Value { std::array::from_fn(|i| f(a[i], b[i], c[i])) };
+        let two = |f: fn(f64, f64) -> f64| -> [f64; N] { std::array::from_fn(|i| f(a[i], b[i])) };
+        let three = |f: fn(f64, f64, f64) -> f64| -> [f64; N] { std::array::from_fn(|i| f(a[i], b[i], c[i])) };
         match self {
             Self::Add => two(|a, b| a + b),
             Self::Subtract => two(|a, b| a - b),
@@ -270,6 +281,7 @@ mod tests {
         ] {
             let [a, b, c] = args.map(|x| [x; 4]);
             let [first, .., last] = math.eval(a, b, c);
+            assert_eq!(math.number(args[0], args[1], args[2]), first);
             assert!((first - expected).abs() < 1e-12 && first == last, "{math:?} {args:?}: {first}");
         }
     }

@@ -49,6 +49,8 @@ pub struct Flow<'a, 'i> {
     pub images: &'a mut Images<'i>,
     /// UV sets by name.
     pub uv_sets: &'a UvSets,
+    /// The version of Blender that the tree is from.
+    pub version: [u32; 3],
     /// The material, world or lamp.
     pub place: Place,
     /// What a Light Falloff node says.
@@ -67,6 +69,7 @@ impl<'a, 'i> Flow<'a, 'i> {
         tree: &'a TreeData,
         images: &'a mut Images<'i>,
         uv_sets: &'a UvSets,
+        version: [u32; 3],
         place: Place,
         warnings: &'a mut Warnings,
     ) -> Self {
@@ -74,6 +77,7 @@ impl<'a, 'i> Flow<'a, 'i> {
             graph: Graph::default(),
             images,
             uv_sets,
+            version,
             place,
             falloff: None,
             warnings,

@@ -31,14 +31,16 @@ use flow::Flow;
 
 /// What the nodes of a lamp emit.
 pub fn lamp(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> LampShader {
+    let version = images.version();
     let uv_sets = UvSets::default();
-    lamp::lamp(&mut Flow::new(tree, images, &uv_sets, place, warnings))
+    lamp::lamp(&mut Flow::new(tree, images, &uv_sets, version, place, warnings))
 }
 
 /// What the nodes of a world emit; `None` for nothing.
 pub fn world(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> Option<WorldShader> {
+    let version = images.version();
     let uv_sets = UvSets::default();
-    world::world(&mut Flow::new(tree, images, &uv_sets, place, warnings))
+    world::world(&mut Flow::new(tree, images, &uv_sets, version, place, warnings))
 }
 
 /// `base` with what the nodes of a material make of its surface.
@@ -49,6 +51,6 @@ pub fn surface(
     uv_sets: &UvSets,
     warnings: &mut Warnings,
 ) -> MaterialDesc {
-    let place = base.place.clone();
-    surface::surface(&mut Flow::new(tree, images, uv_sets, place, warnings), base)
+    let (version, place) = (images.version(), base.place.clone());
+    surface::surface(&mut Flow::new(tree, images, uv_sets, version, place, warnings), base)
 }

@@ -2,8 +2,8 @@
 
 use super::flow::{At, Flow};
 use crate::desc::graph::{
-    Brick, Gradient, Leaf, Metric, Noise, NoiseKind, Op, Procedural, ValueId, Voronoi, VoronoiFeature, Wave,
-    WaveDirection, WaveProfile,
+    Brick, Gradient, Leaf, Metric, Noise, NoiseKind, Op, Procedural, Scatter, ValueId, Voronoi, VoronoiFeature,
+    VoronoiOutput, Wave, WaveDirection, WaveProfile,
 };
 
 /// The coordinates of a texture: those linked, or generated ones.
@@ -66,13 +66,20 @@ pub fn voronoi<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId
         "MINKOWSKI" => Metric::Minkowski,
         _ => Metric::Euclidean,
     };
-    let position = matches!(output, "Position" | "W");
+    let output_kind = match output {
+        "Position" | "W" => VoronoiOutput::Position,
+        "Color" => VoronoiOutput::Color,
+        _ => VoronoiOutput::Distance,
+    };
+    // 5.0 draws the points by other random numbers.
+    let scatter = if flow.version[0] >= 5 { Scatter::Pcg } else { Scatter::Jenkins };
     let voronoi = Voronoi {
         dimensions: dimensions(at.node.text("voronoi_dimensions")),
         feature,
         metric,
         normalize: at.node.flag("normalize"),
-        position,
+        output: output_kind,
+        scatter,
     };
     let names = ["W", "Scale", "Detail", "Roughness", "Lacunarity", "Smoothness", "Exponent", "Randomness"];
     let args = args(flow, at, names);
@@ -147,4 +154,13 @@ pub fn white_noise<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> Val
     // Unlike other textures it has coordinates of its own where nothing is linked.
     let args = vec![flow.input(at, "Vector"), flow.input(at, "W")];
     push(flow, Procedural::WhiteNoise { dimensions }, args, output != "Color")
+}
+
+/// Gabor Texture.
+pub fn gabor<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
+    let flat = at.node.text("gabor_type") != "3D";
+    let orientation = if flat { "Orientation 2D" } else { "Orientation 3D" };
+    let args = args(flow, at, ["Scale", "Frequency", "Anisotropy", orientation]);
+    let value = flow.graph.push(Op::Procedural(Procedural::Gabor { flat }, args));
+    flow.graph.place(value, super::math::place(output, ["Value", "Phase", "Intensity"]))
 }

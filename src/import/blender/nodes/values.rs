@@ -55,6 +55,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeTexChecker", procedural::checker),
     ("ShaderNodeTexGradient", procedural::gradient),
     ("ShaderNodeTexWhiteNoise", procedural::white_noise),
+    ("ShaderNodeTexGabor", procedural::gabor),
     ("ShaderNodeMapping", vector::mapping),
     ("ShaderNodeNormal", vector::normal),
     ("ShaderNodeNormalMap", vector::normal_map),

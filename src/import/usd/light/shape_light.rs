@@ -7,9 +7,9 @@ use super::super::stage::Reading;
 use super::super::values::Values;
 use super::super::walk::Placed;
 use super::{color, rules};
-use crate::desc::{ColorInput, LightLinks, MaterialDesc, MeshDesc, ScalarInput};
+use crate::desc::{ColorInput, LightLinks, MaterialDesc, MeshDesc, RoundsDesc, ScalarInput, SceneDesc, ShapeRef};
 use crate::error::Place;
-use crate::math::{DAffine3, DVec3};
+use crate::math::{DAffine3, DVec3, RoundCone};
 
 /// How a light's emission and its material's go together (`light:materialSyncMode`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,19 +120,47 @@ pub(in super::super) fn geometry_light(reading: &Reading<'_>, placed: &Placed) -
     Some((target, ShapeLight::new(&values, Sync::NoResponse)))
 }
 
-/// Surface of `mesh` where `world` puts it, in square units of the stage.
-pub(in super::super) fn area(reading: &Reading<'_>, mesh: &MeshDesc, world: &DAffine3) -> f64 {
+/// Surface of `shape` where `world` puts it, in square units of the stage.
+pub(in super::super) fn area(reading: &Reading<'_>, shape: ShapeRef, scene: &SceneDesc, world: &DAffine3) -> f64 {
     let unit = if reading.blender { 1.0 } else { reading.meters };
+    let area = match shape {
+        ShapeRef::Mesh(i) => scene.meshes.get(i as usize).map_or(0.0, |mesh| area_of_mesh(mesh, world)),
+        ShapeRef::Rounds(i) => scene.rounds.get(i as usize).map_or(0.0, |rounds| area_of_rounds(rounds, world)),
+    };
+    area / (unit * unit)
+}
+
+/// Of a strand its sides and the caps of its ends: at a joint what shows of the ball makes up, to first order
+/// in the bend, for what the sides cover of each other. A scale that is not even counts by its mean.
+fn area_of_rounds(rounds: &RoundsDesc, world: &DAffine3) -> f64 {
+    let ball = |i: u32| {
+        let ([x, y, z], radius) = (rounds.points[i as usize], rounds.radii[i as usize]);
+        [x, y, z, radius]
+    };
+    let area = |&[before, first, last, after]: &[u32; 4]| {
+        let [start, side, end] = RoundCone::new(ball(first), ball(last)).areas();
+        side + if before == first { start } else { 0.0 } + if after == last { end } else { 0.0 }
+    };
+    let sum: f64 = match rounds.segments() {
+        Some(segments) => segments.iter().map(area).sum(),
+        None => (0..rounds.points.len() as u32).map(|i| area(&[i; 4])).sum(),
+    };
+    sum * world.matrix3.determinant().abs().powf(2.0 / 3.0)
+}
+
+fn area_of_mesh(mesh: &MeshDesc, world: &DAffine3) -> f64 {
     let point = |i: u32| mesh.points.get(i as usize).map_or(DVec3::ZERO, |p| DVec3::from(p.map(f64::from)));
     let triangle = |&[a, b, c]: &[u32; 3]| {
         let [a, b, c] = [a, b, c].map(|i| world.transform_vector3(point(i)));
         0.5 * (b - a).cross(c - a).length()
     };
-    mesh.triangles.iter().map(triangle).sum::<f64>() / (unit * unit)
+    mesh.triangles.iter().map(triangle).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::desc::Strand;
+
     use super::super::testing::Stage;
     use super::*;
     use crate::desc::{LinkSet, SceneDesc};
@@ -197,8 +225,23 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 2, 3], [9, 9, 9]],
             ..MeshDesc::default()
         };
-        let found = stage.with("/A", |reading, placed| area(reading, &mesh, &placed.world));
-        assert!((found / 60_000.0 - 1.0).abs() < 1e-12, "{found}");
+        // A ball, and a rod of three joints: sides, and half a ball at each end.
+        let rounds = |strands| RoundsDesc {
+            points: vec![[0.0; 3], [0.0, 300.0, 0.0], [0.0, 400.0, 0.0]],
+            radii: vec![100.0; 3],
+            strands,
+            ..RoundsDesc::default()
+        };
+        let rod = vec![Strand { end: 3, closed: false }];
+        let scene =
+            SceneDesc { meshes: vec![mesh], rounds: vec![rounds(Vec::new()), rounds(rod)], ..SceneDesc::default() };
+        let shapes = [ShapeRef::Mesh(0), ShapeRef::Rounds(0), ShapeRef::Rounds(1)];
+        let [square, balls, rod] =
+            stage.with("/A", |reading, placed| shapes.map(|shape| area(reading, shape, &scene, &placed.world)));
+        assert!((square / 60_000.0 - 1.0).abs() < 1e-12, "{square}");
+        let scale = 6.0_f64.powf(2.0 / 3.0) * std::f64::consts::PI * 1e4;
+        assert!((balls / (12.0 * scale) - 1.0).abs() < 1e-12, "{balls}");
+        assert!((rod / (12.0 * scale) - 1.0).abs() < 1e-12, "{rod}");
     }
 
     #[test]
@@ -220,7 +263,7 @@ mod tests {
                     name: path.into(),
                     place: reading.place.at(path),
                     asset: path.into(),
-                    mesh: 0,
+                    shape: ShapeRef::Mesh(0),
                     transform: DAffine3::IDENTITY,
                     motion: Vec::new(),
                     materials: Vec::new(),

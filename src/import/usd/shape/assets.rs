@@ -76,8 +76,9 @@ fn meshes_of_the_assets_are_those_of_usd_core() {
             let place = Place::default().at(prim.path().as_str());
             let Some(built) = build(source, &Wants::default(), 0, &place, &mut warnings) else { continue };
             if kind.is_some_and(|kind| kind == "Mesh") {
-                found = [found[0] + 1, found[1] + built.mesh.triangles.len()];
-                let points = built.mesh.points.iter().map(|p| p.map(f64::from));
+                let mesh = built.into_mesh();
+                found = [found[0] + 1, found[1] + mesh.triangles.len()];
+                let points = mesh.points.iter().map(|p| p.map(f64::from));
                 moment += points.map(|[x, y, z]| x + 2.0 * y + 3.0 * z).sum::<f64>();
             }
         }

@@ -8,15 +8,17 @@ use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::{Triangles, mend_points};
 use super::primvar::{self, Channel, Counts, Data, Primvars};
+use super::ribbon::{Joint, Ribbons};
+use super::rounds::Rounds;
 use super::segments::{Basis, Curve, Wrap};
-use super::tube::{Joint, Tubes};
 use super::values::triples;
-use super::{Built, Wants, mesh, points};
+use super::{Built, Wants, mesh, motion, points};
+use crate::desc::{Motion, Strand};
 use crate::error::{Place, Warnings};
 use crate::math::Vec3;
 
-/// About how many points the tubes of a prim may have before they get fewer sides.
-const MOST_POINTS: usize = 1_000_000;
+/// How far, in radii, the straight pieces may be off the curve.
+const TOLERANCE: f32 = 0.05;
 
 /// Curves as authored.
 pub(in super::super) struct Curves {
@@ -26,6 +28,7 @@ pub(in super::super) struct Curves {
     wrap: Wrap,
     widths: Option<Data<1>>,
     primvars: Primvars,
+    motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
 /// Reads curves of schema `kind`; `None`, with a warning, where there are none.
@@ -34,6 +37,8 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
     let mut counts: Vec<i32> = reading.value(prim, "curveVertexCounts").unwrap_or_default();
     let token = |name: &str| reading.value::<Token>(prim, name);
     let (mut basis, mut wrap) = (Basis::Linear, Wrap::Open);
+    let shutter = reading.shutter.get();
+    let mut motion = shutter.map_or_else(Vec::new, |shutter| motion::read(reading, prim, shutter, points.len()));
     let mut from_hermite = false;
     match kind {
         "BasisCurves" => {
@@ -58,6 +63,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
             let tangents = primvar::array(reading, &prim.attribute("tangents"), triples, Interpolation::Vertex);
             match tangents.map(|data| data.values).filter(|tangents| tangents.len() == points.len()) {
                 Some(tangents) => {
+                    motion.iter_mut().for_each(|m| m.value = as_bezier(&m.value, &tangents, &counts).0);
                     (points, counts) = as_bezier(&points, &tangents, &counts);
                     (basis, from_hermite) = (Basis::Bezier, true);
                 }
@@ -96,7 +102,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
     if odd > 0 {
         reading.warn(prim.path(), format!("{odd} curves have a number of points that their basis has no use for"));
     }
-    Some(Curves { points, counts, basis, wrap, widths, primvars })
+    Some(Curves { points, counts, basis, wrap, widths, primvars, motion })
 }
 
 /// Cubic pieces between points with tangents.
@@ -125,7 +131,7 @@ fn as_bezier(points: &[[f32; 3]], tangents: &[[f32; 3]], counts: &[i32]) -> (Vec
 
 impl Curves {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { mut points, counts, basis, wrap, widths, primvars } = self;
+        let Self { mut points, counts, basis, wrap, widths, primvars, motion } = self;
         let bad = mend_points(&mut points);
         let curves = lay_out(&counts, points.len(), basis, wrap, place, warnings);
         let joints = curves.last().map_or(0, |curve| curve.joints.end);
@@ -145,27 +151,92 @@ impl Curves {
         if dropped > 0 {
             warnings.push(place, format!("{dropped} curves have points that are not finite; they are left out"));
         }
-        let rings: usize = lines.iter().map(|(_, joints)| joints.len()).sum();
-        let sides = (MOST_POINTS / rings.max(1)).clamp(3, 16) as u32;
-        if sides < 6 {
-            warnings.push(place, format!("has {} curves: as tubes of {sides} sides", lines.len()));
+        let set = Set { curves: &curves, lines };
+        if normals.is_some() {
+            set.ribbons(channels, wants, place, warnings)
+        } else {
+            set.strands(channels, &motion, wants, place, warnings)
         }
-        let mut tubes = Tubes::default();
-        for (i, joints) in &lines {
-            tubes.push(*i as u32, joints, curves[*i].is_closed(), sides);
+    }
+}
+
+/// Curves and their joints.
+struct Set<'a> {
+    curves: &'a [Curve],
+    /// Index of the curve, and its joints.
+    lines: Vec<(usize, Vec<Joint>)>,
+}
+
+impl Set<'_> {
+    fn ribbons(self, channels: Channels, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
+        let mut ribbons = Ribbons::default();
+        for (i, joints) in &self.lines {
+            ribbons.push(*i as u32, joints, self.curves[*i].is_closed());
         }
-        let Tubes { points, normals, triangles, origins } = tubes;
-        let along = Along { curves: &curves, origins: &origins };
-        let channels = Channels {
-            normals: Some(Channel { interpolation: Interpolation::Vertex, values: normals, indices: None }),
-            uvs: channels.uvs.into_iter().map(|(name, channel)| (name, along.channel(&channel))).collect(),
-            color: channels.color.map(|channel| along.channel(&channel)),
-            opacity: channels.opacity.map(|channel| along.channel(&channel)),
-        };
+        let Ribbons { points, normals, triangles, origins } = ribbons;
+        let normals = Channel { interpolation: Interpolation::Vertex, values: normals, indices: None };
+        let channels = Channels { normals: Some(normals), ..self.along(&origins, &channels) };
         let triangles = Triangles { points: triangles, corners: None, faces: None };
-        let mesh =
-            Surface { points, triangles, channels, slots: None, motion: Vec::new() }.finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new() })
+        let surface = Surface { points, triangles, channels, slots: None, motion: Vec::new() };
+        surface.finish(wants, place, warnings).map(Built::Mesh)
+    }
+
+    fn strands(
+        self,
+        channels: Channels,
+        motion: &[Motion<Vec<[f32; 3]>>],
+        wants: &Wants,
+        place: &Place,
+        warnings: &mut Warnings,
+    ) -> Option<Built> {
+        let (mut points, mut radii, mut strands, mut origins) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut thin, mut last) = (0, None);
+        for (i, joints) in &self.lines {
+            if !joints.iter().any(|joint| joint.radius > 0.0) {
+                thin += u32::from(!joints.is_empty());
+                continue;
+            }
+            let first = points.len();
+            for joint in joints {
+                // Two joints at one place would be a ball within the strand.
+                if last.replace(joint.center) == Some(joint.center) && points.len() > first {
+                    let radius: &mut f32 = radii.last_mut()?;
+                    *radius = radius.max(joint.radius);
+                    continue;
+                }
+                points.push(joint.center.into());
+                radii.push(joint.radius);
+                origins.push((*i as u32, joint.at));
+            }
+            strands.push(Strand { end: points.len() as u32, closed: self.curves[*i].is_closed() });
+        }
+        if thin > 0 {
+            warnings.push(place, format!("{thin} curves have no width; they are left out"));
+        }
+        if strands.is_empty() {
+            return None;
+        }
+        let at = |m: &Motion<Vec<[f32; 3]>>| {
+            let point = |&(curve, (segment, t)): &(u32, (u32, f32))| {
+                self.curves[curve as usize].piece(segment as usize, |i| m.value[i]).at(t)
+            };
+            Motion { time: m.time, value: origins.iter().map(point).collect() }
+        };
+        let motion = motion.iter().map(at).collect();
+        let channels = self.along(&origins, &channels);
+        let rounds = Rounds { points, radii, strands, channels, motion };
+        Some(Built::Rounds(rounds.finish(wants, place, warnings)))
+    }
+
+    /// Values at places along the curves.
+    fn along(&self, origins: &[(u32, (u32, f32))], channels: &Channels) -> Channels {
+        let along = Along { curves: self.curves, origins };
+        Channels {
+            normals: None,
+            uvs: channels.uvs.iter().map(|(name, channel)| (name.clone(), along.channel(channel))).collect(),
+            color: channels.color.as_ref().map(|channel| along.channel(channel)),
+            opacity: channels.opacity.as_ref().map(|channel| along.channel(channel)),
+        }
     }
 }
 
@@ -212,9 +283,10 @@ fn line(
     let segments = curve.segments() as u32;
     for segment in 0..segments {
         let piece = curve.piece(segment as usize, |i| points[i]);
-        // Off by less than a tenth of the radius, and round at any width.
-        let radius = 0.5 * width((segment, 0.5)).abs();
-        let steps = piece.steps(0.1 * radius);
+        let tolerance = TOLERANCE * 0.5 * width((segment, 0.5)).abs();
+        let of_widths = widths.filter(|channel| channel.interpolation == Interpolation::Vertex);
+        let of_widths = of_widths.map_or(0.0, |channel| 0.5 * curve.piece(segment as usize, |i| channel.at(i)).bend());
+        let steps = piece.steps(of_widths, tolerance);
         let last = segment + 1 == segments && !curve.is_closed();
         for step in 0..steps + u32::from(last) {
             let t = step as f32 / steps as f32;
@@ -233,7 +305,7 @@ fn line(
     joints
 }
 
-/// Values at the points of tubes.
+/// Values at places along curves.
 struct Along<'a> {
     curves: &'a [Curve],
     origins: &'a [(u32, (u32, f32))],

@@ -78,24 +78,20 @@ impl Surface {
             return None;
         }
         let spread = Spread { triangles: &triangles, points: points.len() };
-        let Channels { normals, mut uvs, color, opacity } = channels;
+        let Channels { normals, uvs, color, opacity } = channels;
         let mut normals = normals.map(|channel| spread.attribute(channel));
         if let Some(normals) = &mut normals {
             mend_normals(normals, &points, &triangles, place, warnings);
         }
-        let mut sets = Vec::with_capacity(wants.uv_sets.len());
-        for name in &wants.uv_sets {
-            let found = uvs.iter().position(|(known, _)| known == name).map(|i| uvs.swap_remove(i).1);
-            let spare = name.is_empty() || (wants.spare_first_set && sets.is_empty());
-            if found.is_none() && !spare {
-                let what = format!("its material looks textures up by primvar {name}, which is absent; (0, 0) is used");
-                warnings.push(place, what);
+        let sets = uv_sets(uvs, wants, place, warnings, |channel| match channel {
+            Some(channel) => {
+                let mut set = spread.attribute(channel);
+                let (Attribute::Point(values) | Attribute::Corner(values)) = &mut set;
+                values.par_iter_mut().with_min_len(PASS).for_each(|uv| *uv = upside_down(*uv));
+                set
             }
-            sets.push(match found {
-                Some(channel) => upside_down(spread.attribute(channel)),
-                None => Attribute::Point(vec![[0.0, 1.0]; points.len()]),
-            });
-        }
+            None => Attribute::Point(vec![[0.0, 1.0]; points.len()]),
+        });
         // What has no displayColor has that of its instance, or is grey, as in usdview.
         let is_grey = wants.display_color && !(wants.instance_color && opacity.is_none());
         let grey = || is_grey.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
@@ -113,9 +109,8 @@ impl Surface {
             }
             tangents
         });
-        let path = place.node.as_deref().unwrap_or_default();
         Some(MeshDesc {
-            name: path.rsplit('/').next().unwrap_or_default().into(),
+            name: name(place),
             place: place.clone(),
             triangles: triangles.points,
             points,
@@ -129,6 +124,33 @@ impl Surface {
             motion,
         })
     }
+}
+
+/// The last name of the path of `place`.
+pub(super) fn name(place: &Place) -> Arc<str> {
+    let path = place.node.as_deref().unwrap_or_default();
+    path.rsplit('/').next().unwrap_or_default().into()
+}
+
+/// The UV sets that are wanted, each laid out by `lay`, which is given none for a set that is absent.
+pub(super) fn uv_sets<T>(
+    mut uvs: Vec<(Arc<str>, Channel<2>)>,
+    wants: &Wants,
+    place: &Place,
+    warnings: &mut Warnings,
+    lay: impl Fn(Option<Channel<2>>) -> T,
+) -> Vec<T> {
+    let mut sets = Vec::with_capacity(wants.uv_sets.len());
+    for name in &wants.uv_sets {
+        let found = uvs.iter().position(|(known, _)| known == name).map(|i| uvs.swap_remove(i).1);
+        let spare = name.is_empty() || (wants.spare_first_set && sets.is_empty());
+        if found.is_none() && !spare {
+            let what = format!("its material looks textures up by primvar {name}, which is absent; (0, 0) is used");
+            warnings.push(place, what);
+        }
+        sets.push(lay(found));
+    }
+    sets
 }
 
 /// Colour of shapes that are to show theirs and have none (UsdImaging's fallback).
@@ -158,24 +180,23 @@ impl Spread<'_> {
 }
 
 /// USD's st grows upwards, ours downwards.
-fn upside_down(mut uvs: Attribute<[f32; 2]>) -> Attribute<[f32; 2]> {
-    let (Attribute::Point(values) | Attribute::Corner(values)) = &mut uvs;
-    values.par_iter_mut().with_min_len(PASS).for_each(|[u, v]| {
-        (*u, *v) = (if u.is_finite() { *u } else { 0.0 }, if v.is_finite() { 1.0 - *v } else { 1.0 });
-    });
-    uvs
+pub(super) fn upside_down([u, v]: [f32; 2]) -> [f32; 2] {
+    [if u.is_finite() { u } else { 0.0 }, if v.is_finite() { 1.0 - v } else { 1.0 }]
 }
 
 /// Colour and opacity in one.
+pub(super) fn rgba(color: [f32; 3], opacity: [f32; 1]) -> [f32; 4] {
+    let [r, g, b] = color.map(|v| if v.is_finite() { v.max(0.0) } else { 1.0 });
+    [r, g, b, if opacity[0].is_finite() { opacity[0].clamp(0.0, 1.0) } else { 1.0 }]
+}
+
+/// Colours and opacities in one.
 fn colors(
     color: Option<Attribute<[f32; 3]>>,
     opacity: Option<Attribute<[f32; 1]>>,
     triangles: &Triangles,
 ) -> Option<Attribute<[f32; 4]>> {
-    let mix = |color: &[f32; 3], opacity: &[f32; 1]| {
-        let [r, g, b] = color.map(|v| if v.is_finite() { v.max(0.0) } else { 1.0 });
-        [r, g, b, if opacity[0].is_finite() { opacity[0].clamp(0.0, 1.0) } else { 1.0 }]
-    };
+    let mix = |color: &[f32; 3], opacity: &[f32; 1]| rgba(*color, *opacity);
     let at_corners = |values: &Attribute<[f32; 3]>| -> Vec<[f32; 3]> { corners(values, triangles) };
     Some(match (color?, opacity) {
         (Attribute::Point(color), None) => Attribute::Point(color.iter().map(|c| mix(c, &[1.0])).collect()),

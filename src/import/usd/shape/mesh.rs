@@ -134,7 +134,7 @@ impl Mesh {
         };
         surface.slots = slots;
         let mesh = surface.finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new() })
+        Some(Built::Mesh(mesh))
     }
 }
 

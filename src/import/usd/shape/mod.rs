@@ -1,9 +1,10 @@
-//! Gprims to triangles. Reading is done on one thread, since a stage is bound to its own; the work on
-//! what was read is done on all.
+//! Gprims to triangles, strands and balls. Reading is done on one thread, since a stage is bound to its
+//! own; the work on what was read is done on all.
 //!
 //! ```text
 //! mesh ─► polygons ─► [subdivide] ─► triangulate ─► finish: attributes at points and corners
-//! curves, points, primitives ─────────────────────┘
+//! ribbons, primitives ────────────────────────────┘
+//! curves, points ─► rounds: strands and balls, attributes at points
 //! ```
 
 mod curves;
@@ -15,13 +16,14 @@ mod polygons;
 mod primitive;
 mod primvar;
 mod profile;
+mod ribbon;
+mod rounds;
 mod segments;
 mod stand_in;
 mod subdivide;
 mod subsets;
 pub(super) mod tint;
 mod triangulate;
-mod tube;
 mod values;
 
 pub(super) use primitive::Likeness;
@@ -34,9 +36,8 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
 use super::stage::Reading;
-use crate::desc::MeshDesc;
+use crate::desc::{MeshDesc, RoundsDesc};
 use crate::error::{Place, Warnings};
-use crate::math::DAffine3;
 
 /// A gprim as authored.
 pub(super) enum Source {
@@ -62,13 +63,11 @@ pub(super) struct Wants {
     pub instance_color: bool,
 }
 
-/// A gprim as it is traced.
-pub(super) struct Built {
-    /// Object space, stage units. Slot 0 of the materials is that of the gprim itself, slot `i + 1` that of
-    /// subset `i`.
-    pub mesh: MeshDesc,
-    /// Where copies of the mesh stand in object space (points); empty for one as it is.
-    pub copies: Vec<DAffine3>,
+/// A gprim as it is traced, in object space and stage units. Slot 0 of the materials is that of the gprim
+/// itself, slot `i + 1` that of subset `i`.
+pub(super) enum Built {
+    Mesh(MeshDesc),
+    Rounds(RoundsDesc),
 }
 
 impl Source {
@@ -113,7 +112,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, primvars: &[Primvar]) -> 
     }
 }
 
-/// Makes triangles of it; `None`, with a warning, where nothing is left.
+/// Makes a shape of it; `None`, with a warning, where nothing is left.
 pub(super) fn build(
     source: Source,
     wants: &Wants,

@@ -1,4 +1,4 @@
-//! UsdGeomPoints as spheres.
+//! UsdGeomPoints as balls.
 
 use openusd::sdf::Value;
 use openusd::usd::Prim;
@@ -6,18 +6,20 @@ use openusd_schemas::geom::{Interpolation, Primvar};
 
 use super::super::stage::Reading;
 use super::finish::Channels;
-use super::primvar::{self, Counts, Data, Primvars};
-use super::profile::Solid;
+use super::primvar::{self, Channel, Counts, Data, Primvars};
+use super::rounds::Rounds;
 use super::values::scalars;
-use super::{Built, Wants, mesh, primitive};
+use super::{Built, Wants, mesh, motion};
+use crate::desc::Motion;
 use crate::error::{Place, Warnings};
-use crate::math::{DAffine3, DMat3, DVec3};
+use crate::math::Vec3;
 
 /// Points as authored.
 pub(in super::super) struct Points {
     points: Vec<[f32; 3]>,
     widths: Option<Data<1>>,
     primvars: Primvars,
+    motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
 /// Reads points; `None`, with a warning, where there are none.
@@ -25,7 +27,9 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) ->
     let points = mesh::points(reading, prim)?;
     let mut primvars = primvar::read(reading, prim, inherited);
     let widths = widths(reading, prim, &mut primvars);
-    Some(Points { points, widths, primvars })
+    let shutter = reading.shutter.get();
+    let motion = shutter.map_or_else(Vec::new, |shutter| motion::read(reading, prim, shutter, points.len()));
+    Some(Points { points, widths, primvars, motion })
 }
 
 /// Widths of points and curves: the primvar comes before the attribute.
@@ -41,36 +45,62 @@ pub(super) fn widths(reading: &Reading<'_>, prim: &Prim, primvars: &mut Primvars
 
 impl Points {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { points, widths, primvars } = self;
+        let Self { points, widths, primvars, motion } = self;
         let count = points.len();
         let counts = Counts { faces: 1, joints: count, points: count, corners: count };
-        let widths = widths.and_then(|data| data.fit(&counts, place, warnings));
-        let is_constant = |i: Interpolation| matches!(i, Interpolation::Constant | Interpolation::Uniform);
-        let width = |i: usize| match &widths {
-            Some(channel) if is_constant(channel.interpolation) => channel.at(0)[0],
-            Some(channel) => channel.at(i)[0],
-            None => 1.0,
+        let radii = match widths.and_then(|data| data.fit(&counts, place, warnings)) {
+            Some(widths) => by_point(widths, count).into_iter().map(|[width]| 0.5 * width).collect(),
+            None => vec![0.5; count],
         };
-        let mut copies = Vec::with_capacity(count);
-        for (i, point) in points.iter().enumerate() {
-            let radius = 0.5 * f64::from(width(i));
-            let center = DVec3::from(point.map(f64::from));
-            if center.is_finite() && radius.is_finite() && radius > 0.0 {
-                copies.push(DAffine3::from_mat3_translation(DMat3::from_diagonal(DVec3::splat(radius)), center));
-            }
-        }
-        if copies.len() < count {
-            let dropped = count - copies.len();
+        let is_sound = |&i: &usize| Vec3::from(points[i]).is_finite() && radii[i].is_finite() && radii[i] > 0.0;
+        let kept: Vec<usize> = (0..count).filter(is_sound).collect();
+        if kept.len() < count {
+            let dropped = count - kept.len();
             warnings.push(place, format!("{dropped} points are not finite or have no width; they are left out"));
         }
-        if copies.is_empty() {
+        if kept.is_empty() {
             return None;
         }
-        let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
-        if channels.make_constant() {
-            warnings.push(place, "values of single points are left out; those of the first point stand for all");
-        }
-        let mesh = primitive::solid_surface(Solid::sphere(1.0), channels).finish(wants, place, warnings)?;
-        Some(Built { mesh, copies })
+        let kept = Kept { of: count, kept };
+        let Channels { uvs, color, opacity, .. } = Channels::new(primvars, &counts, wants, place, warnings);
+        let channels = Channels {
+            normals: None,
+            uvs: uvs.into_iter().map(|(name, channel)| (name, kept.channel(channel))).collect(),
+            color: color.map(|channel| kept.channel(channel)),
+            opacity: opacity.map(|channel| kept.channel(channel)),
+        };
+        let rounds = Rounds {
+            points: kept.values(points),
+            radii: kept.values(radii),
+            strands: Vec::new(),
+            channels,
+            motion: motion.into_iter().map(|m| Motion { time: m.time, value: kept.values(m.value) }).collect(),
+        };
+        Some(Built::Rounds(rounds.finish(wants, place, warnings)))
+    }
+}
+
+/// One value for each of `count` points.
+fn by_point<const N: usize>(channel: Channel<N>, count: usize) -> Vec<[f32; N]> {
+    match channel.interpolation {
+        Interpolation::Constant | Interpolation::Uniform => vec![channel.at(0); count],
+        _ => channel.flat(),
+    }
+}
+
+/// The points that are kept.
+struct Kept {
+    of: usize,
+    kept: Vec<usize>,
+}
+
+impl Kept {
+    fn values<T: Copy>(&self, values: Vec<T>) -> Vec<T> {
+        if self.kept.len() == self.of { values } else { self.kept.iter().map(|&i| values[i]).collect() }
+    }
+
+    fn channel<const N: usize>(&self, channel: Channel<N>) -> Channel<N> {
+        let values = self.values(by_point(channel, self.of));
+        Channel { interpolation: Interpolation::Vertex, values, indices: None }
     }
 }

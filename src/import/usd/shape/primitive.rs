@@ -140,7 +140,7 @@ impl Primitive {
         let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
         channels.make_constant();
         let mesh = solid_surface(solid, channels).finish(wants, place, warnings)?;
-        Some(Built { mesh, copies: Vec::new() })
+        Some(Built::Mesh(mesh))
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use openusd_schemas::geom::Interpolation;
 
 use super::primvar::Channel;
-use super::tube::Joint;
+use super::ribbon::Joint;
 use crate::math::Vec3;
 
 /// How points make a curve.
@@ -160,6 +160,15 @@ fn mix<const N: usize>(a: [f32; N], b: [f32; N], t: f32) -> [f32; N] {
 }
 
 impl<const N: usize> Piece<N> {
+    /// The largest second difference of its points: how far it is from straight and even.
+    pub fn bend(&self) -> f32 {
+        let [a, b, c, d] = &self.0;
+        let length = |p: &[f32; N], q: &[f32; N], r: &[f32; N]| {
+            (0..N).map(|i| (p[i] - 2.0 * q[i] + r[i]).powi(2)).sum::<f32>().sqrt()
+        };
+        length(a, b, c).max(length(b, c, d))
+    }
+
     pub fn at(&self, t: f32) -> [f32; N] {
         let [a, b, c, d] = self.0;
         let s = 1.0 - t;
@@ -178,10 +187,11 @@ impl Piece<3> {
         if derivative.length_squared() > 1e-12 * size { derivative } else { d - a }.into()
     }
 
-    /// Chords that keep within `tolerance` of the curve, by its second derivative; straight pieces have one.
-    pub fn steps(&self, tolerance: f32) -> u32 {
+    /// Chords that keep within `tolerance` of the curve, by its second derivative, or by `bend` of what else
+    /// runs along it; straight pieces have one.
+    pub fn steps(&self, bend: f32, tolerance: f32) -> u32 {
         let [a, b, c, d] = self.0.map(Vec3::from);
-        let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
+        let bend = self.bend().max(bend);
         let scale = (b - a).length() + (c - b).length() + (d - c).length();
         // Thin curves that fill the picture show their chords as well.
         let tolerance = tolerance.min(1e-2 * scale).max(1e-5 * scale);

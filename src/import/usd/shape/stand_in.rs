@@ -76,7 +76,7 @@ impl StandIn {
         let triangles = Triangles { points: triangles, corners: None, faces: is_cards.then_some(faces) };
         let slots = is_cards.then_some(slots);
         let surface = Surface { points, triangles, channels, slots, motion: Vec::new() };
-        Some(Built { mesh: surface.finish(wants, place, warnings)?, copies: Vec::new() })
+        surface.finish(wants, place, warnings).map(Built::Mesh)
     }
 }
 

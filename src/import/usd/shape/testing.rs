@@ -31,6 +31,22 @@ pub(super) fn built(usda: &str, path: &str, wants: &Wants, subdivision: u32) -> 
     (built, warnings.iter().map(|w| w.what.clone()).collect())
 }
 
+impl Built {
+    pub fn into_mesh(self) -> crate::desc::MeshDesc {
+        match self {
+            Self::Mesh(mesh) => mesh,
+            Self::Rounds(rounds) => panic!("{} is no mesh", rounds.name),
+        }
+    }
+
+    pub fn into_rounds(self) -> crate::desc::RoundsDesc {
+        match self {
+            Self::Rounds(rounds) => rounds,
+            Self::Mesh(mesh) => panic!("{} is a mesh", mesh.name),
+        }
+    }
+}
+
 #[test]
 fn sources_go_to_other_threads() {
     fn is_send<T: Send>() {}

@@ -2,7 +2,7 @@
 
 use super::super::super::images::tests::png;
 use super::*;
-use crate::desc::{AlphaMode, Channel, ColorSpace, PixelData, TextureTransform, Wrap};
+use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, PixelData, TextureTransform, Wrap};
 
 #[test]
 fn standard_surface_folds_its_weights() {
@@ -166,7 +166,7 @@ fn closures_mix_and_emit() {
 }
 
 #[test]
-fn a_graph_of_images_is_computed_texel_by_texel() {
+fn a_graph_of_images_is_handed_over_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     png(folder.path(), "a.png", 2, &[[0, 51, 102], [255, 204, 153]]);
     png(folder.path(), "b.png", 2, &[[255, 0, 0], [51, 0, 0]]);
@@ -193,12 +193,21 @@ fn a_graph_of_images_is_computed_texel_by_texel() {
         float inputs:specular_roughness.connect = </m/b.outputs:out>";
     let read = mtlx_in(folder.path(), "ND_open_pbr_surface_surfaceshader", lines, &nodes);
     let m = read.material();
-    let (texture, image) = read.texture(m.base_color.texture.unwrap().texture);
-    assert_eq!((texture.wrap_u, texture.wrap_v), (Wrap::Clamp, Wrap::Repeat));
+    let lookup = |index: usize| {
+        let ops = m.graph.ops().iter().filter_map(|op| match op {
+            Op::Image { texture, uv } => Some((*texture, *uv)),
+            _ => None,
+        });
+        ops.collect::<Vec<_>>()[index]
+    };
+    let (texture, image) = read.texture(lookup(0).0);
+    assert_eq!((texture.wrap_u, texture.wrap_v, &*image.name), (Wrap::Clamp, Wrap::Repeat, "a.png"));
     // b is 1 at the first texel (white) and 0.2 at the second: a + 0.2 (1 − a).
-    let expected = [1.0, 1.0, 1.0, 1.0, 0.84, 0.68];
-    let PixelData::F16(pixels) = &image.pixels else { panic!() };
-    assert!(pixels.iter().zip(expected).all(|(a, b)| (a.to_f64() - b).abs() < 5e-4), "{pixels:?}");
+    for (a, b, expected) in [([0.0, 0.2, 0.4], 1.0, [1.0; 3]), ([1.0, 0.8, 0.6], 0.2, [1.0, 0.84, 0.68])] {
+        let texels = [(lookup(0).0, [a[0], a[1], a[2], 1.0]), (lookup(1).0, [b, 0.0, 0.0, 1.0])];
+        same(&value_of(m, m.base_color.graph.unwrap(), &texels)[..3], &expected);
+    }
+    assert_eq!(m.base_color, ColorInput::graph(m.base_color.graph.unwrap()));
     let (_, channel) = m.roughness.texture.unwrap();
     assert_eq!(channel, Channel::R);
     assert_eq!(read.warnings, "");

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::super::images::tests::stage;
 use super::*;
+use crate::desc::graph::ValueId;
 use crate::import::ImportOptions;
 
 /// A material, the tables that it points into, and what was told.
@@ -81,6 +82,21 @@ fn mtlx(id: &str, lines: &str, nodes: &str) -> Read {
 }
 
 /// Values pass through USD's single precision.
+/// A value of the graph of `m` where images have these texels.
+fn value_of(m: &MaterialDesc, id: ValueId, texels: &[(u32, [f64; 4])]) -> [f64; 4] {
+    let mut values: Vec<[f64; 4]> = Vec::new();
+    for op in m.graph.ops() {
+        values.push(match op {
+            Op::Constant(value) => *value,
+            Op::Leaf(_) => [0.5; 4],
+            Op::Image { texture, .. } => texels.iter().find(|(of, _)| of == texture).unwrap().1,
+            Op::Apply(function, args) => function.eval(&args.iter().map(|arg| values[arg.index()]).collect::<Vec<_>>()),
+            other => panic!("{other:?}"),
+        });
+    }
+    values[id.index()]
+}
+
 fn close(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= 1e-6 * b.abs().max(1.0)
 }

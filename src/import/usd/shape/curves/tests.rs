@@ -1,4 +1,4 @@
-use crate::desc::Attribute;
+use crate::desc::Strand;
 use crate::import::usd::shape::testing::built;
 use crate::import::usd::shape::{Built, Wants};
 use crate::math::Vec3;
@@ -9,41 +9,33 @@ fn curves(kind: &str, body: &str) -> (Option<Built>, Vec<String>) {
     built(&format!("def {kind} \"C\"\n{{\n{body}\n}}\n"), "/C", &wants, 2)
 }
 
-fn extent(built: &Built) -> (Vec3, Vec3) {
-    let points = built.mesh.points.iter().map(|&p| Vec3::from(p));
+/// Box of the points.
+fn extent(points: &[[f32; 3]]) -> (Vec3, Vec3) {
+    let points = points.iter().map(|&p| Vec3::from(p));
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 
-/// The volume inside, positive where triangles face outwards.
-fn volume(built: &Built) -> f32 {
-    let p = |i: u32| Vec3::from(built.mesh.points[i as usize]);
-    built.mesh.triangles.iter().map(|&[a, b, c]| p(a).dot(p(b).cross(p(c))) / 6.0).sum()
-}
-
 #[test]
-fn a_straight_line_is_a_cylinder() {
+fn a_straight_line_is_one_segment() {
     let (built, warnings) = curves(
         "BasisCurves",
         "uniform token type = \"linear\"
-        int[] curveVertexCounts = [2]
-        point3f[] points = [(0, 0, 0), (0, 0, 3)]
+        int[] curveVertexCounts = [2, 3]
+        point3f[] points = [(0, 0, 0), (0, 0, 3), (1, 0, 0), (1, 0, 0), (1, 2, 0)]
         float[] widths = [2] (interpolation = \"constant\")
-        texCoord2f[] primvars:st = [(0.25, 0.5)] (interpolation = \"uniform\")
-        color3f[] primvars:displayColor = [(0, 0, 0), (1, 1, 1)] (interpolation = \"vertex\")",
+        texCoord2f[] primvars:st = [(0.25, 0.5), (0.5, 1)] (interpolation = \"uniform\")
+        color3f[] primvars:displayColor = [(0, 0, 0), (1, 1, 1), (0, 0, 0), (0, 0, 0), (0, 1, 0)] (interpolation = \"vertex\")
+        float[] primvars:displayOpacity = [0.5]",
     );
-    let built = built.unwrap();
+    let rounds = built.unwrap().into_rounds();
     assert_eq!(warnings, Vec::<String>::new());
-    // Sixteen sides: 16/2 sin(2π/16) of r² for π.
-    let area = 8.0 * (std::f32::consts::TAU / 16.0).sin();
-    assert!((volume(&built) - 3.0 * area).abs() < 1e-4, "{}", volume(&built));
-    assert!(built.mesh.points.len() == 4 * 16 && built.mesh.triangles.len() == 2 * 16 + 2 * 14);
-    let (Attribute::Point(uvs), Some(Attribute::Point(colors))) = (&built.mesh.uvs[0], &built.mesh.colors) else {
-        panic!()
-    };
-    assert!(uvs.iter().all(|&uv| uv == [0.25, 0.5]));
-    for (p, c) in built.mesh.points.iter().zip(colors) {
-        assert!((c[0] - p[2] / 3.0).abs() < 1e-6);
-    }
+    // Of two points at one place one is left.
+    assert_eq!(rounds.points, [[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [1.0, 0.0, 0.0], [1.0, 2.0, 0.0]]);
+    assert_eq!(rounds.radii, [1.0; 4]);
+    assert_eq!(rounds.strands, [2, 4].map(|end| Strand { end, closed: false }));
+    assert_eq!(rounds.uvs[0], [[0.25, 0.5], [0.25, 0.5], [0.5, 0.0], [0.5, 0.0]]);
+    let colors = [[0.0, 0.0, 0.0, 0.5], [1.0, 1.0, 1.0, 0.5], [0.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.5]];
+    assert_eq!(rounds.colors.unwrap(), colors);
 }
 
 #[test]
@@ -88,35 +80,46 @@ fn cubic_bases_pass_where_they_should() {
     ];
     for (basis, wrap, start, end) in cases {
         let (built, warnings) = curves("BasisCurves", &body(basis, wrap));
-        let mesh = built.unwrap().mesh;
+        let rounds = built.unwrap().into_rounds();
         assert_eq!(warnings, Vec::<String>::new());
-        let center = |ring: &[[f32; 3]]| ring.iter().map(|&p| Vec3::from(p)).sum::<Vec3>() / ring.len() as f32;
-        // Rings of sixteen, and two caps at the end.
-        let first = center(&mesh.points[..16]);
-        let last = center(&mesh.points[mesh.points.len() - 16..]);
+        let (first, last) = (Vec3::from(rounds.points[0]), Vec3::from(rounds.points[rounds.points.len() - 1]));
         assert!(first.distance(Vec3::new(0.0, start[0], start[1])) < 1e-5, "{basis} {wrap} {first}");
         assert!(last.distance(Vec3::new(0.0, end[0], end[1])) < 1e-5, "{basis} {wrap} {last}");
+        assert!(!rounds.strands[0].closed && rounds.strands.len() == 1);
     }
     let (built, _) = curves("BasisCurves", &body("bspline", "periodic"));
-    let built = built.unwrap();
-    // No caps: every ring joins the next.
-    assert_eq!(built.mesh.triangles.len(), 2 * built.mesh.points.len());
-    assert!(volume(&built) > 0.0);
+    let rounds = built.unwrap().into_rounds();
+    assert!(rounds.strands[0].closed && rounds.points[0] != rounds.points[rounds.points.len() - 1]);
 }
 
 #[test]
-fn tapers_have_no_cap_and_normals_lean() {
-    let (built, _) = curves(
-        "BasisCurves",
-        "uniform token type = \"linear\"
-        int[] curveVertexCounts = [2]
-        point3f[] points = [(0, 0, 0), (0, 0, 1)]
-        float[] widths = [2, 0] (interpolation = \"varying\")",
-    );
-    let mesh = built.unwrap().mesh;
-    let Some(Attribute::Point(normals)) = &mesh.normals else { panic!() };
-    assert!((normals[0][2] - 0.5f32.sqrt()).abs() < 1e-5, "{:?}", normals[0]);
-    assert_eq!(mesh.triangles.len(), 16 + 14);
+fn pieces_are_as_fine_as_bends_and_widths_call_for() {
+    let count = |points: &str, widths: &str, interpolation: &str| {
+        let body = format!(
+            "uniform token basis = \"bezier\"
+            int[] curveVertexCounts = [4]
+            point3f[] points = {points}
+            float[] widths = {widths} (interpolation = \"{interpolation}\")"
+        );
+        curves("BasisCurves", &body).0.unwrap().into_rounds()
+    };
+    let straight = "[(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]";
+    assert_eq!(count(straight, "[0.2]", "constant").points.len(), 2);
+    let tapered = count(straight, "[0.2, 0]", "varying");
+    assert_eq!((tapered.points.len(), tapered.radii), (2, vec![0.1, 0.0]));
+    // 0.1 (1 − 3 s t): bends between the ends.
+    let waist = count(straight, "[0.2, 0, 0, 0.2]", "vertex");
+    let middle = waist.radii.iter().copied().fold(f32::INFINITY, f32::min);
+    assert!(waist.points.len() > 6 && (middle - 0.025).abs() < 1e-2, "{:?}", waist.radii);
+    // A quarter of a circle: the chord's sagitta against the radius.
+    let bow = "[(0, 0, 0), (0, 0.5523, 0), (0.4477, 1, 0), (1, 1, 0)]";
+    for (width, tolerance) in [(0.4, 0.01), (0.02, 0.0005)] {
+        let points = count(bow, &format!("[{width}]"), "constant").points;
+        let radius = |p: Vec3| p.distance(Vec3::X);
+        let off = |w: &[[f32; 3]]| 1.0 - radius(0.5 * (Vec3::from(w[0]) + Vec3::from(w[1])));
+        let worst = points.windows(2).map(off).fold(0.0, f32::max);
+        assert!(worst < tolerance && worst > 0.2 * tolerance, "{width}: {worst}");
+    }
 }
 
 #[test]
@@ -129,24 +132,24 @@ fn normals_make_ribbons() {
         normal3f[] normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1)]
         float[] widths = [0.5, 0.5, 0.5]",
     );
-    let built = built.unwrap();
+    let mesh = built.unwrap().into_mesh();
     assert_eq!(warnings, Vec::<String>::new());
-    assert_eq!(built.mesh.triangles.len(), 4);
-    assert_eq!(extent(&built), (Vec3::new(0.0, -0.25, 0.0), Vec3::new(2.0, 0.25, 0.0)));
-    let [a, b, c] = built.mesh.triangles[0].map(|i| Vec3::from(built.mesh.points[i as usize]));
+    assert_eq!(mesh.triangles.len(), 4);
+    assert_eq!(extent(&mesh.points), (Vec3::new(0.0, -0.25, 0.0), Vec3::new(2.0, 0.25, 0.0)));
+    let [a, b, c] = mesh.triangles[0].map(|i| Vec3::from(mesh.points[i as usize]));
     assert!((b - a).cross(c - a).z > 0.0);
 }
 
 #[test]
 fn other_curves_are_approximated_or_told() {
-    let points = "int[] curveVertexCounts = [2]
+    let body = "int[] curveVertexCounts = [2]
         point3f[] points = [(0, 0, 0), (1, 0, 0)]
         float[] widths = [0.1] (interpolation = \"constant\")";
-    let (built, warnings) =
-        curves("HermiteCurves", &format!("{points}\nvector3f[] tangents = [(0, 3, 0), (0, -3, 0)]"));
+    let (built, warnings) = curves("HermiteCurves", &format!("{body}\nvector3f[] tangents = [(0, 3, 0), (0, -3, 0)]"));
     // y = 3t(1 − t)… of two handles of length 1: 3/4 in the middle.
-    assert!((extent(&built.unwrap()).1.y - 0.8).abs() < 2e-2, "{warnings:?}");
-    let points = points.replace("[0.1] (interpolation = \"constant\")", "[0.1, 0.2]");
+    let points = built.unwrap().into_rounds().points;
+    assert!((extent(&points).1.y - 0.75).abs() < 1e-2, "{warnings:?}");
+    let points = body.replace("[0.1] (interpolation = \"constant\")", "[0.1, 0.2]");
     let (built, warnings) =
         curves("HermiteCurves", &format!("{points}\nvector3f[] tangents = [(0, 3, 0), (0, -3, 0)]"));
     assert!(built.is_some() && warnings.is_empty(), "{warnings:?}");
@@ -160,17 +163,34 @@ fn other_curves_are_approximated_or_told() {
 }
 
 #[test]
-fn points_are_copies_of_a_sphere() {
+fn curves_without_width_are_left_out() {
+    let (built, warnings) = curves(
+        "BasisCurves",
+        "uniform token type = \"linear\"
+        int[] curveVertexCounts = [2, 2, 2]
+        point3f[] points = [(0, 0, 0), (0, 0, 3), (1, 0, 0), (1, 0, 3), (nan, 0, 0), (0, 0, 0)]
+        float[] widths = [0, -1, 1, 1, 1, 1]",
+    );
+    assert_eq!(built.unwrap().into_rounds().points, [[1.0, 0.0, 0.0], [1.0, 0.0, 3.0]]);
+    assert!(warnings.iter().any(|w| w.contains("1 curves have no width")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.contains("1 curves have points that are not finite")), "{warnings:?}");
+}
+
+#[test]
+fn points_are_balls_with_values_of_their_own() {
     let (built, warnings) = curves(
         "Points",
         "point3f[] points = [(0, 0, 0), (5, 0, 0), (0, 0, inf), (1, 1, 1)]
         float[] widths = [1, 4, 1, 0]
-        color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)] (interpolation = \"vertex\")",
+        color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)] (interpolation = \"vertex\")
+        float[] primvars:displayOpacity = [0, 0.25] (interpolation = \"vertex\")
+        int[] primvars:displayOpacity:indices = [1, 0, 1, 1]
+        texCoord2f[] primvars:st = [(0, 0), (0.5, 0.25), (1, 1), (1, 1)] (interpolation = \"varying\")",
     );
-    let built = built.unwrap();
-    assert_eq!(built.copies.len(), 2);
-    let copy = built.copies[1];
-    assert_eq!((copy.translation.x, copy.matrix3.x_axis.x), (5.0, 2.0));
-    assert!((extent(&built).1 - Vec3::ONE).abs().max_element() < 1e-3);
-    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    let rounds = built.unwrap().into_rounds();
+    assert_eq!(rounds.points, [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]]);
+    assert_eq!((rounds.radii, rounds.strands), (vec![0.5, 2.0], Vec::new()));
+    assert_eq!(rounds.colors.unwrap(), [[1.0, 0.0, 0.0, 0.25], [0.0, 1.0, 0.0, 0.0]]);
+    assert_eq!(rounds.uvs, [[[0.0, 1.0], [0.5, 0.75]]]);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
 }

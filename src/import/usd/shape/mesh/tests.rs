@@ -29,7 +29,7 @@ fn quads_become_fans_and_v_is_turned() {
         color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0)] (interpolation = \"uniform\")
         float[] primvars:displayOpacity = [0.5]"
     ));
-    let mesh = built.unwrap().mesh;
+    let mesh = built.unwrap().into_mesh();
     assert_eq!(mesh.triangles, [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]);
     let Attribute::Point(uvs) = &mesh.uvs[0] else { panic!() };
     assert_eq!((uvs[0], uvs[4]), ([0.0, 0.75], [1.0, 0.0]));
@@ -48,7 +48,7 @@ fn left_handed_faces_are_turned_over_with_their_corners() {
         texCoord2f[] primvars:st = [(0, 0), (1, 0), (2, 1), (3, 1)] (interpolation = \"faceVarying\")
         int[] primvars:st:indices = [0, 1, 2, 3, 3, 2, 1, 0]"
     ));
-    let mesh = built.unwrap().mesh;
+    let mesh = built.unwrap().into_mesh();
     assert_eq!(mesh.triangles[0], [0, 4, 1]);
     let Attribute::Corner(uvs) = &mesh.uvs[0] else { panic!() };
     assert_eq!(uvs[..3], [[0.0, 1.0], [2.0, 0.0], [1.0, 1.0]]);
@@ -68,7 +68,7 @@ fn triangles_keep_their_arrays() {
         normal3f[] primvars:normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = \"vertex\")
         double2[] primvars:st = [(0, 0), (1, 0), (0, 1), (0, 1), (1, 0), (1, 1)] (interpolation = \"faceVarying\")",
     );
-    let mesh = built.unwrap().mesh;
+    let mesh = built.unwrap().into_mesh();
     assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3]]);
     assert_eq!(mesh.normals, Some(Attribute::Point(vec![[0.0, 0.0, 1.0]; 4])));
     let Attribute::Corner(uvs) = &mesh.uvs[0] else { panic!() };
@@ -85,13 +85,13 @@ fn constant_primvars_are_inherited_and_missing_ones_told_once() {
         def Mesh \"M\" {{ {QUADS} }} }}"
     );
     let (shape, warnings) = built(&usda, "/X/M", &wants(&["st", "", "map1"]), 0);
-    let mesh = shape.unwrap().mesh;
+    let mesh = shape.unwrap().into_mesh();
     assert_eq!(mesh.uvs[0], Attribute::Point(vec![[0.5, 0.75]; 6]));
     assert_eq!(mesh.uvs[2], Attribute::Point(vec![[0.0, 1.0]; 6]));
     assert_eq!(mesh.colors, Some(Attribute::Point(vec![[0.0, 0.0, 1.0, 1.0]; 6])));
     assert_eq!(warnings, ["its material looks textures up by primvar map1, which is absent; (0, 0) is used"]);
     let (shape, _) = built(&usda, "/X/M", &Wants { display_color: false, ..wants(&[]) }, 0);
-    assert_eq!(shape.unwrap().mesh.colors, None);
+    assert_eq!(shape.unwrap().into_mesh().colors, None);
 }
 
 #[test]
@@ -107,10 +107,10 @@ fn subsets_choose_slots_and_holes_are_left_out() {
     let paths: Vec<String> = source.unwrap().subsets().iter().map(|p| p.to_string()).collect();
     assert_eq!(paths, ["/M/a", "/M/b"]);
     let (built, warnings) = built(&format!("def Mesh \"M\"\n{{\n{body}\n}}\n"), "/M", &wants(&[]), 2);
-    assert_eq!(built.unwrap().mesh.material_slots, Some(vec![0, 0, 1, 1]));
+    assert_eq!(built.unwrap().into_mesh().material_slots, Some(vec![0, 0, 1, 1]));
     assert_eq!(warnings.len(), 3, "{warnings:?}");
     let (built, _) = mesh(&format!("{QUADS}\nint[] holeIndices = [0]"));
-    assert_eq!(built.unwrap().mesh.triangles, [[1, 2, 5], [1, 5, 4]]);
+    assert_eq!(built.unwrap().into_mesh().triangles, [[1, 2, 5], [1, 5, 4]]);
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn a_scheme_refines_everything_and_ignores_normals() {
     );
     let (built, warnings) = mesh(&body);
     assert_eq!(warnings, Vec::<String>::new());
-    let mesh = built.unwrap().mesh;
+    let mesh = built.unwrap().into_mesh();
     assert_eq!(mesh.triangles.len(), 2 * 16 * 2);
     let Some(Attribute::Point(normals)) = &mesh.normals else { panic!() };
     assert!(normals.iter().all(|n| (n[2] - 1.0).abs() < 1e-6));
@@ -145,7 +145,7 @@ fn a_scheme_refines_everything_and_ignores_normals() {
 fn level_zero_shows_the_cage_with_smooth_normals() {
     let usda = format!("def Mesh \"M\" {{ {} }}", QUADS.replace("\"none\"", "\"catmullClark\""));
     let (shape, _) = built(&usda, "/M", &wants(&[]), 0);
-    let mesh = shape.unwrap().mesh;
+    let mesh = shape.unwrap().into_mesh();
     assert_eq!((mesh.points.len(), mesh.triangles.len()), (6, 4));
     assert_eq!(mesh.normals, Some(Attribute::Point(vec![[0.0, 0.0, 1.0]; 6])));
 }
@@ -153,7 +153,7 @@ fn level_zero_shows_the_cage_with_smooth_normals() {
 #[test]
 fn loop_on_quads_is_told_and_cut() {
     let (built, warnings) = mesh(&QUADS.replace("\"none\"", "\"loop\""));
-    assert_eq!(built.unwrap().mesh.triangles.len(), 4 * 16);
+    assert_eq!(built.unwrap().into_mesh().triangles.len(), 4 * 16);
     assert!(warnings[0].contains("cut to triangles"), "{warnings:?}");
 }
 
@@ -161,7 +161,7 @@ fn loop_on_quads_is_told_and_cut() {
 fn what_is_broken_is_told_and_the_rest_stays() {
     let one = |body: &str| {
         let (built, warnings) = mesh(&format!("uniform token subdivisionScheme = \"none\"\n{body}"));
-        (built.map(|b| b.mesh.triangles), warnings)
+        (built.map(|b| b.into_mesh().triangles), warnings)
     };
     let points = "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]";
     let cases = [

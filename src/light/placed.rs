@@ -1,0 +1,95 @@
+//! Where the emitters of a shape stand, and what that makes of their bounds.
+
+use super::bounds::Asked;
+use super::{LightBounds, LightTree, Receiver};
+use crate::math::{Affine3A, Bounds, DMat3, DVec3, Mat3, Vec3, Vec3A, place_point};
+
+/// A tree over the emitters of a shape, in the shape's space, placed in render space.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub to_render: Affine3A,
+    to_shape: Affine3A,
+    /// Carries the normal of a plane to the shape's space.
+    plane_to_shape: Mat3,
+    pub bounds: LightBounds,
+    /// Irradiance in render space per irradiance in the shape's space: 1 unless the scale is not the same
+    /// along all axes.
+    importance_scale: f32,
+}
+
+impl Placed {
+    /// `None` where `to_render` can't be undone.
+    pub fn new(tree: &LightTree, to_render: Affine3A) -> Option<Self> {
+        let in_f64 = |v: Vec3A| Vec3::from(v).as_dvec3();
+        let m = DMat3::from_cols(
+            in_f64(to_render.matrix3.x_axis),
+            in_f64(to_render.matrix3.y_axis),
+            in_f64(to_render.matrix3.z_axis),
+        );
+        let inverse = m.inverse();
+        let to_shape =
+            Affine3A::from_mat3_translation(inverse.as_mat3(), (inverse * -in_f64(to_render.translation)).as_vec3());
+        if !to_shape.is_finite() {
+            return None;
+        }
+        let bounds = placed_bounds(tree, &to_render, m);
+        let uniform = m.determinant().abs().powf(2.0 / 3.0);
+        let area = f64::from(bounds.intensity) / f64::from(tree.bounds().intensity);
+        Some(Self {
+            to_render,
+            to_shape,
+            plane_to_shape: m.transpose().as_mat3(),
+            bounds,
+            importance_scale: (area / uniform) as f32,
+        })
+    }
+
+    /// The receiver in the shape's space.
+    pub fn asked(&self, at: &Receiver) -> Asked {
+        let (p, p_err) = place_point(&self.to_shape, at.p, Vec3::ZERO);
+        // In f64, where the plane of a huge or tiny shape stays in range.
+        let n = at.n.map(|n| (self.plane_to_shape * n).as_dvec3().normalize_or_zero().as_vec3());
+        Asked::new(p, n, p_err)
+    }
+
+    /// Unoccluded irradiance that the emitters of `tree` may bring to `at`.
+    pub fn importance(&self, tree: &LightTree, at: &Receiver) -> f32 {
+        tree.weigh(&self.asked(at)).sum * self.importance_scale
+    }
+}
+
+/// Bounds in render space of a tree placed by `to_render`, whose linear part is `m`.
+fn placed_bounds(tree: &LightTree, to_render: &Affine3A, m: DMat3) -> LightBounds {
+    let of_mesh = tree.bounds();
+    let mut bounds = Bounds::EMPTY;
+    for corner in tree.boxes().flat_map(Bounds::corners) {
+        let (p, p_err) = place_point(to_render, corner, Vec3::ZERO);
+        bounds = bounds.with_point(p - p_err).with_point(p + p_err);
+    }
+    // Rotation and uniform scale carry a cone as it is. Else normals go by the cofactors N of m. For unit x and y the sine of the angle between Nx and Ny is
+    // |N'(x × y)| / (|Nx| |Ny|), N' the cofactors of N: it grows by |N'| / σ² at most, where σ, the
+    // smallest factor of any length under N, is |det m| / |m| or more.
+    let det = m.determinant().abs();
+    let cofactors = m.inverse().transpose() * det;
+    let norm = |m: DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+    let scale = det.powf(2.0 / 3.0);
+    let similar = norm(m.transpose() * m - DMat3::from_diagonal(DVec3::splat(scale))) < 1e-6 * scale;
+    let growth = norm(m).powi(3) / det;
+    let cos = f64::from(of_mesh.cos_normals);
+    let sin = growth * (1.0 - cos * cos).max(0.0).sqrt();
+    let cos = match () {
+        () if similar => (cos - 1e-5).max(-1.0),
+        () if cos > 0.0 && sin < 0.7 => (1.0 - sin * sin).sqrt() - 1e-6,
+        () => -1.0,
+    };
+    let axis = cofactors * of_mesh.axis.as_dvec3();
+    let area = if cos > 0.5 { axis.length() } else { scale };
+    let intensity = (f64::from(of_mesh.intensity) * area).clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
+    LightBounds {
+        bounds,
+        axis: axis.normalize_or(DVec3::Z).as_vec3(),
+        cos_normals: cos as f32,
+        intensity: intensity as f32,
+        ..*of_mesh
+    }
+}

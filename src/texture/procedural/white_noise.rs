@@ -1,0 +1,36 @@
+//! White noise: hashes of the coordinates' bits.
+
+use crate::math::Vec3;
+
+use super::Dimensions;
+use super::hash::unit;
+
+/// What is picked for white noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WhiteNoise {
+    /// Coordinates read.
+    pub dimensions: Dimensions,
+}
+
+impl WhiteNoise {
+    /// A number from 0 to 1.
+    pub fn value(&self, p: Vec3, w: f32) -> f32 {
+        match self.dimensions {
+            Dimensions::One => unit([w]),
+            Dimensions::Two => unit([p.x, p.y]),
+            Dimensions::Three => unit([p.x, p.y, p.z]),
+            Dimensions::Four => unit([p.x, p.y, p.z, w]),
+        }
+    }
+
+    /// Three numbers from 0 to 1; the first is the value.
+    pub fn color(&self, p: Vec3, w: f32) -> [f32; 3] {
+        let (green, blue) = match self.dimensions {
+            Dimensions::One => (unit([w, 1.0]), unit([w, 2.0])),
+            Dimensions::Two => (unit([p.x, p.y, 1.0]), unit([p.x, p.y, 2.0])),
+            Dimensions::Three => (unit([p.x, p.y, p.z, 1.0]), unit([p.x, p.y, p.z, 2.0])),
+            Dimensions::Four => (unit([p.z, p.x, w, p.y]), unit([w, p.z, p.y, p.x])),
+        };
+        [self.value(p, w), green, blue]
+    }
+}
