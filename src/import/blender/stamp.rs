@@ -260,5 +260,7 @@ fn rows(map: &DAffine3) -> [[f64; 4]; 4] {
 /// How much larger the thing is than it was in Blender.
 fn scale(then: &[[f64; 4]; 4], now: &DAffine3) -> f64 {
     let ratio = now.matrix3.determinant() / affine(then).matrix3.determinant();
-    if ratio != 0.0 && ratio.is_finite() { ratio.abs().cbrt() } else { 1.0 }
+    let scale = ratio.abs().cbrt();
+    // Files keep matrices to six digits.
+    if (scale - 1.0).abs() < 1e-6 || scale == 0.0 || !scale.is_finite() { 1.0 } else { scale }
 }

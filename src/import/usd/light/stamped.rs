@@ -128,7 +128,8 @@ pub(in super::super) fn worlds(reading: &Reading<'_>, all: &[Placed], images: &m
         }
         let place = reading.place_of(&placed.path);
         let warnings = &mut reading.warnings.borrow_mut();
-        worlds.domes.extend(stamp.dome(world, turn(placed), &place, &mut images.images, warnings));
+        let dome = stamp.dome(world, turn(placed), &place, &mut images.images, warnings);
+        worlds.domes.extend(dome.map(|dome| LightDesc { place, ..dome }));
     }
     worlds
 }
@@ -139,4 +140,152 @@ fn turn(placed: &Placed) -> DMat3 {
     let x = m.x_axis.normalize_or(DVec3::X);
     let y = m.y_axis.reject_from(x).normalize_or(DVec3::Y);
     DMat3::from_cols(x, y, x.cross(y))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use crate::desc::{LightKind, ProjectionDesc, SceneDesc};
+    use crate::error::Warnings;
+    use crate::import::ImportOptions;
+    use crate::math::DVec3;
+
+    /// A scene as Blender 5.0.1 writes it, with `prims` in its root, and what was said of it.
+    fn load(prims: &str) -> (SceneDesc, String) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stage.usda");
+        let root = "customData = { dictionary Blender = { bool generated = 1 } }";
+        let head = "doc = \"Blender v5.0.1\"\nmetersPerUnit = 1\nupAxis = \"Z\"";
+        std::fs::write(&path, format!("#usda 1.0\n(\n{head}\n)\ndef Xform \"root\" ({root}) {{\n{prims}\n}}")).unwrap();
+        let mut warnings = Warnings::new();
+        let scene = crate::import::scene(&path, &ImportOptions::default(), &mut warnings).unwrap();
+        (scene, warnings.iter().map(|warning| format!("{warning}\n")).collect())
+    }
+
+    /// An area lamp of 100 W that `data` and `edits` say more of, 3 above the floor.
+    fn area(data: &str, edits: &str) -> String {
+        format!(
+            r#"def Xform "Area" {{
+                custom string userProperties:penumbra:light = '{{"version": 1, "light": {{"type": "AREA", "energy": 100,
+ "shape": "ELLIPSE", "size": 1, "size_y": 0.5, "spread": 1, "temperature_color": [1, 0.5, 0.25]{data}}}}}'
+                double3 xformOp:translate = (0, 0, 3)
+                uniform token[] xformOpOrder = ["xformOp:translate"]
+                def DiskLight "Area" {{
+                    bool inputs:enableColorTemperature = 1
+                    float inputs:colorTemperature = 3000
+                    float inputs:intensity = 31.830988
+                    bool inputs:normalize = 1
+                    float inputs:radius = 0.375
+                    {edits}
+                }}
+            }}"#
+        )
+        .replace("\n ", " ")
+    }
+
+    fn near(found: f64, expected: f64) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} is not {expected}");
+    }
+
+    #[test]
+    fn the_stamp_says_what_usdlux_has_no_place_for() {
+        let (scene, said) = load(&area(r#", "use_shadow": false, "lightgroup": "key""#, ""));
+        let light = &scene.lights[0];
+        let LightKind::Disk { width, height, radiance, spread, .. } = light.kind else { panic!("{light:?}") };
+        near(width, 1.0);
+        near(height, 0.5);
+        near(radiance[1], 0.5 * 100.0 / (PI * 0.25 * PI * 0.5));
+        assert_eq!((spread, light.links.cast_shadow, light.links.group.as_deref()), (1.0, false, Some("key")));
+        // z up becomes y up.
+        assert!((light.transform.translation - DVec3::new(0.0, 3.0, 0.0)).length() < 1e-9);
+        assert!((light.transform.matrix3.z_axis - DVec3::Y).length() < 1e-9);
+        assert_eq!((light.place.node.as_deref(), &*light.name, &*said), (Some("/root/Area/Area"), "Area", ""));
+    }
+
+    #[test]
+    fn edits_of_usdlux_count() {
+        let edit = "float inputs:exposure = 1\ncolor3f inputs:color = (0, 1, 0)\nbool inputs:shadow:enable = 0
+            token visibility = \"inherited\"";
+        let (scene, said) = load(&area("", edit));
+        let light = &scene.lights[0];
+        near(light.kind.color()[1], 2.0 * 0.5 * 100.0 / (PI * 0.25 * PI * 0.5));
+        assert_eq!((light.kind.color()[0], light.links.cast_shadow, &*said), (0.0, false, ""));
+        let (scene, _) = load(&area("", "token visibility = \"invisible\""));
+        assert!(scene.lights.is_empty());
+        let (scene, _) = load(&area("", "").replace("radius = 0.375", "radius = 0.75"));
+        let LightKind::Disk { width, height, .. } = scene.lights[0].kind else { panic!() };
+        near(width, 2.0);
+        near(height, 1.0);
+    }
+
+    #[test]
+    fn broken_stamps_leave_usdlux() {
+        for broken in ["nothing", "3", "{}", r#"{"version": 1, "light": {"energy": "much"}}"#] {
+            let stage = area("", "");
+            let from = stage.find("'{").unwrap();
+            let to = stage.rfind("}'").unwrap() + 2;
+            let (scene, said) = load(&format!("{}'{broken}'{}", &stage[..from], &stage[to..]));
+            assert!(matches!(scene.lights[0].kind, LightKind::Disk { spread, .. } if spread == PI));
+            assert!(said.contains("/root/Area/Area: userProperties:penumbra:light is left out"), "{said}");
+            assert_eq!(said.lines().count(), 1, "{said}");
+        }
+    }
+
+    /// Without any stamp the losses are told once.
+    #[test]
+    fn plain_files_are_told_of() {
+        let (_, said) = load(&area("", "").replace("userProperties:penumbra", "userProperties:other"));
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.contains("exported by Blender alone") && said.contains("spread"), "{said}");
+        assert!(!said.contains("soft falloff"), "{said}");
+    }
+
+    const WORLD: &str = r#"def Xform "penumbra_world" {
+            custom string userProperties:penumbra:world = '{"version": 1, "world": {"name": "W", "color": [1, 2, 3]}}'
+        }
+        def DomeLight "env_light" { float inputs:intensity = 7 }"#;
+
+    #[test]
+    fn worlds_stand_for_the_dome_of_the_exporter() {
+        let (scene, said) = load(WORLD);
+        assert_eq!((scene.lights.len(), &*said), (1, ""));
+        let LightKind::Dome { radiance, image: None } = scene.lights[0].kind else { panic!() };
+        assert_eq!((radiance, scene.lights[0].place.node.as_deref()), ([1.0, 2.0, 3.0], Some("/root/penumbra_world")));
+        assert!((scene.lights[0].transform.matrix3.y_axis - DVec3::Y).length() < 1e-9);
+        // Whoever hides the dome wants none.
+        for hidden in [
+            WORLD.replace("intensity = 7", "intensity = 7\ntoken visibility = \"invisible\""),
+            WORLD.replace("\"env_light\" {", "\"env_light\" (active = false) {"),
+        ] {
+            assert!(load(&hidden).0.lights.is_empty(), "{hidden}");
+        }
+        let (scene, said) = load(&WORLD.replace("version\": 1", "version\": 9"));
+        assert!(matches!(scene.lights[0].kind, LightKind::Dome { radiance: [7.0, ..], .. }));
+        assert!(said.contains("version 9"), "{said}");
+    }
+
+    /// The exporter writes no prim for cameras that UsdGeom does not know.
+    #[test]
+    fn panoramas_are_cameras_of_their_xform() {
+        let camera = |kind: &str| {
+            format!(
+                r#"def Xform "Cam" {{
+                    custom string userProperties:penumbra:camera = '{{"version": 1, "active": true, "render":
+                     {{"size": [200, 100]}}, "camera": {{"type": "{kind}", "ortho_scale": 5}}}}'
+                    double3 xformOp:translate = (0, 0, 3)
+                    uniform token[] xformOpOrder = ["xformOp:translate"]
+                }}"#
+            )
+            .replace("\n                     ", " ")
+        };
+        let (scene, said) = load(&camera("PANO"));
+        assert!(matches!(scene.cameras[0].projection, ProjectionDesc::Equirectangular { .. }), "{said}");
+        assert_eq!((scene.render.camera.as_deref(), scene.render.resolution), (Some("/root/Cam"), Some([200, 100])));
+        let (scene, _) = load(&camera("ORTHO"));
+        let ProjectionDesc::Orthographic { half_width, half_height } = scene.cameras[0].projection else { panic!() };
+        assert_eq!([half_width, half_height], [2.5, 1.25]);
+        // A perspective one was taken out by somebody.
+        assert!(load(&camera("PERSP")).0.cameras.is_empty());
+    }
 }
