@@ -55,7 +55,7 @@ class PENUMBRA_OT_export(bpy.types.Operator, ExportHelper):
         try:
             told = export(context, path, self.selected, self.animation, self.instancing)
         except (ValueError, OSError, RuntimeError) as error:
-            self.report({"ERROR"}, str(error).strip())
+            self.report({"ERROR"}, _plain(error))
             return {"CANCELLED"}
         except Exception as error:  # noqa: BLE001
             traceback.print_exc()
@@ -81,11 +81,16 @@ def command(arguments):
     try:
         told = export(bpy.context, options.file, options.selected, options.animation, options.instancing)
     except (ValueError, OSError, RuntimeError) as error:
-        print(f"error: {str(error).strip()}")
+        print(f"error: {_plain(error)}")
         return 1
     for warning in told:
         print(f"warning: {warning}")
     return 0
+
+
+def _plain(error):
+    """Without the word that errors of Blender's operators begin with."""
+    return str(error).strip().removeprefix("Error: ")
 
 
 def _menu(self, _context):
