@@ -82,7 +82,7 @@ fn an_instance_has_a_color_of_its_own_where_its_mesh_has_none() {
     }
     // Vertex colours come first.
     let colors = vec![[0.5, 0.5, 0.5, 1.0]; builder.desc.meshes[0].points.len()];
-    builder.desc.meshes[0].colors = Some(Attribute::Point(colors));
+    std::sync::Arc::make_mut(&mut builder.desc.meshes[0]).colors = Some(Attribute::Point(colors));
     let picture = self::picture(&builder.desc, 4, &settings("combined,diffuse_color", 16));
     close("Diffuse Color", mean(&picture, "Diffuse Color", 1), 0.3, 1e-5);
 }

@@ -167,12 +167,13 @@ fn spaces_lead_there_and_back() {
                 &format!("{quantity:?} {space:?}"),
                 |g| {
                     let (p, two) = (g.leaf(Leaf::Position), g.number(2.0));
-                    let v = if quantity == Quantity::Normal { g.apply(Function::Normalize(3), &[p]) } else { p };
+                    let far = g.add(p, two);
+                    let v = if quantity == Quantity::Normal { g.apply(Function::Normalize(3), &[far]) } else { p };
                     let there = g.transform(quantity, Space::World, space, v);
                     let back = g.transform(quantity, space, Space::World, there);
                     g.add(back, two)
                 },
-                |_, p| (2.0 + if quantity == Quantity::Normal { p.normalize() } else { p }).to_array(),
+                |_, p| (2.0 + if quantity == Quantity::Normal { (p + 2.0).normalize() } else { p }).to_array(),
             );
         }
     }
@@ -345,7 +346,7 @@ fn lit(from: f64, to: f64) -> f64 {
 fn glowing_graphs_are_sampled_as_lights() {
     let whole = lit(-HALF, HALF);
     // Fades from 1 to 0; symmetric about the origin.
-    let fade = lamp(true, 256, |g| {
+    let fade = lamp(true, 1024, |g| {
         let (uv, one) = (g.leaf(Leaf::Uv(0)), g.number(1.0));
         let u = g.place(uv, 0);
         g.subtract(one, u)
@@ -359,8 +360,8 @@ fn glowing_graphs_are_sampled_as_lights() {
             g.math(Math::LessThan, &[x, zero])
         }
     };
-    close("world", lamp(true, 256, halves(|| Leaf::Position)), lit(-HALF, 0.0), 0.01);
-    close("object", lamp(false, 256, halves(|| Leaf::ObjectPosition)), lit(-HALF, 0.0), 0.01);
+    close("world", lamp(true, 4096, halves(|| Leaf::Position)), lit(-HALF, 0.0), 0.01);
+    close("object", lamp(false, 4096, halves(|| Leaf::ObjectPosition)), lit(-HALF, 0.0), 0.01);
     // One side alone, the other, and by the angle: cos² of almost straight down.
     let front = |g: &mut Graph| {
         let (back, one) = (g.leaf(Leaf::Backfacing), g.number(1.0));

@@ -233,7 +233,7 @@ fn curves_and_points_of_usd_look_like_fine_meshes_of_them() {
     assert_eq!(warnings.iter().map(ToString::to_string).collect::<Vec<_>>(), Vec::<String>::new());
     assert_eq!((scene.rounds.len(), scene.meshes.len()), (2, 0));
     let mut fine = scene.clone();
-    fine.meshes = scene.rounds.iter().map(tessellated).collect();
+    fine.meshes = scene.rounds.iter().map(|rounds| tessellated(rounds).into()).collect();
     for instance in &mut fine.instances {
         let ShapeRef::Rounds(i) = instance.shape else { panic!("a mesh") };
         instance.shape = ShapeRef::Mesh(i);

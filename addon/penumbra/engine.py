@@ -6,7 +6,11 @@ import bpy
 import penumbra
 
 from . import passes, properties
-from .export import Exporter, camera
+from .export import Exporter
+from .viewport import Viewport
+
+# Viewports by the address of their engine: attributes of an engine are not all kept by Blender.
+VIEWPORTS = {}
 
 
 class PenumbraRenderEngine(bpy.types.RenderEngine):
@@ -49,12 +53,9 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         if self.test_break():
             return
 
-        # Blender makes room for the border alone where it is cropped to.
-        border = camera.border(scene, size)
-        corner = (0, 0) if border is None or scene.render.use_crop_to_border else border[:2]
 
         def show(picture):
-            self._fill(view_layer, picture, corner)
+            self._fill(view_layer, picture)
 
         picture = penumbra.render(
             exporter.scene,
@@ -64,7 +65,40 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             **properties.settings(scene, view_layer),
         )
         self._tell(picture.warnings)
-        self._fill(view_layer, picture, corner)
+        self._fill(view_layer, picture)
+
+    def view_update(self, context, depsgraph):
+        """The scene was edited while the viewport shows it."""
+        self._in_viewport(lambda: self._viewport().update(context, depsgraph))
+
+    def view_draw(self, context, depsgraph):
+        """Draws the viewport."""
+        self._in_viewport(lambda: self._viewport().draw(context, depsgraph))
+
+    def _viewport(self):
+        viewport = VIEWPORTS.get(self.as_pointer())
+        if viewport is None:
+            viewport = VIEWPORTS[self.as_pointer()] = Viewport(self)
+        return viewport
+
+    def _in_viewport(self, work):
+        try:
+            work()
+        except Exception as error:  # noqa: BLE001
+            traceback.print_exc()
+            self.update_stats("Penumbra", str(error))
+
+    def __del__(self):
+        """Blender frees the engine: its viewport ends with it."""
+        try:
+            viewport = VIEWPORTS.pop(self.as_pointer(), None)
+        except ReferenceError:
+            viewport = None
+        if viewport is not None:
+            viewport.free()
+        base = getattr(super(), "__del__", None)
+        if base is not None:
+            base()
 
     def _observe(self, progress):
         """Called by the engine, on Blender's thread; a true answer stops the render."""
@@ -78,9 +112,11 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             self.update_stats("", text)
         return self.test_break()
 
-    def _fill(self, view_layer, picture, corner):
-        """Puts a picture into Blender's render result, its lower left corner at `corner`."""
-        result = self.begin_result(*corner, picture.width, picture.height, layer=view_layer.name)
+    def _fill(self, view_layer, picture):
+        """Puts a picture into Blender's render result, which with a border has its size."""
+        result = self.begin_result(0, 0, picture.width, picture.height, layer=view_layer.name)
+        if result is None:
+            raise ValueError(f"Blender makes no room for a picture of {picture.width}x{picture.height} pixels")
         try:
             for render_pass in result.layers[0].passes:
                 if render_pass.name in picture:
@@ -108,4 +144,7 @@ def register():
 
 
 def unregister():
+    for viewport in VIEWPORTS.values():
+        viewport.free()
+    VIEWPORTS.clear()
     bpy.utils.unregister_class(PenumbraRenderEngine)

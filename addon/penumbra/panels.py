@@ -3,8 +3,13 @@
 import bpy
 
 _ENGINE = "PENUMBRA"
-# Panels of other engines that mean nothing here.
-_EXCLUDED = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes"}
+# Panels of Blender's own engines that mean nothing here.
+_EXCLUDED = {
+    "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "RENDER_PT_simplify_render", "RENDER_PT_simplify_greasepencil",
+    "VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes",
+}
+# Panels that show for Penumbra, too, and the set of engines that each had by itself.
+_LENT = {}
 
 
 class _Panel:
@@ -28,6 +33,7 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(own, "spp", text="Samples")
         column.prop(own, "time", text="Time Limit")
+        layout.prop(own, "viewport_spp")
         layout.prop(own, "seed")
 
 
@@ -145,13 +151,18 @@ def _shared():
 def register():
     for panel in PANELS:
         bpy.utils.register_class(panel)
-    for panel in _shared():
-        panel.COMPAT_ENGINES.add(_ENGINE)
+    for panel in list(_shared()):
+        # A set of its own: Cycles' panels all have one and the same.
+        _LENT[panel] = panel.__dict__.get("COMPAT_ENGINES")
+        panel.COMPAT_ENGINES = {*panel.COMPAT_ENGINES, _ENGINE}
 
 
 def unregister():
-    for panel in bpy.types.Panel.__subclasses__():
-        if panel not in PANELS:
-            getattr(panel, "COMPAT_ENGINES", set()).discard(_ENGINE)
+    for panel, engines in _LENT.items():
+        if engines is None:
+            del panel.COMPAT_ENGINES
+        else:
+            panel.COMPAT_ENGINES = engines
+    _LENT.clear()
     for panel in reversed(PANELS):
         bpy.utils.unregister_class(panel)

@@ -35,7 +35,12 @@ def _annotations():
 class PenumbraSceneSettings(bpy.types.PropertyGroup):
     """How Penumbra renders a scene."""
 
-    __annotations__ = _annotations()
+    __annotations__ = {
+        **_annotations(),
+        "viewport_spp": bpy.props.IntProperty(
+            name="Viewport Samples", description="Samples per pixel of the rendered viewport", default=256, min=1
+        ),
+    }
 
 
 class PenumbraViewLayerSettings(bpy.types.PropertyGroup):

@@ -1,12 +1,15 @@
 """The rendered viewport: a picture that begins coarse, refines, and starts again at every edit."""
 
+import json
+
 import bpy
 import gpu
 import penumbra
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.presets import draw_texture_2d
 
 from . import properties
-from .export import Exporter
+from .export import Exporter, camera
 
 # Seconds between two looks for a new picture.
 _POLL = 1.0 / 30.0
@@ -20,6 +23,7 @@ class Viewport:
         self.exporter = Exporter(penumbra.Scene())
         self.render = penumbra.Viewport()
         self.texture = None
+        self.place = (0, 0, 1, 1)
         self.view = None
         self.stale = True
         self.alive = True
@@ -32,72 +36,115 @@ class Viewport:
         self.render.stop()
 
     def update(self, context, depsgraph):
-        """The scene was edited."""
-        self.exporter.update(depsgraph, local_view=context.space_data if context.space_data.local_view else None)
+        """The scene was edited: hands over what changed."""
+        size = (max(context.region.width, 1), max(context.region.height, 1))
+        self.exporter.update(depsgraph, size, context.space_data)
         self.stale = True
 
     def draw(self, context, depsgraph):
         """Draws the newest picture, and starts another where the view is not the one that it shows."""
-        region, scene = context.region, depsgraph.scene
-        view = _view(context)
+        scene = depsgraph.scene
+        view = _view(context, depsgraph)
         if self.stale or view != self.view:
             settings = properties.settings(scene, context.view_layer)
-            settings["passes"] = ["combined"]
+            settings.update(passes=["combined"], spp=scene.penumbra.viewport_spp)
             settings.pop("time", None)
-            settings["spp"] = scene.penumbra.viewport_spp or 1024
+            changed, self.stale, self.view = self.stale, False, view
             try:
-                self.render.show(self.exporter.scene, view, self.stale, **settings)
+                self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)
             except Exception as error:
                 self.engine.update_stats("Penumbra", str(error))
-                self.stale, self.view = False, view
                 return
-            self.stale, self.view = False, view
         self._tell()
         picture = self.render.picture()
         if picture is not None:
             width, height, pixels, spp = picture
-            buffer = gpu.types.Buffer("FLOAT", width * height * 4, pixels)
-            self.texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
-            self.engine.update_stats("Penumbra", f"Sample {spp:.0f}/{settings_spp(scene)}")
+            data = gpu.types.Buffer("FLOAT", width * height * 4, pixels)
+            self.texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=data)
+            self.place = _place(view)
+            self.engine.update_stats("", f"Sample {spp:.0f}/{scene.penumbra.viewport_spp}")
         if self.texture is not None:
+            left, lower, width, height = self.place
             gpu.state.blend_set("ALPHA_PREMULT")
-            draw_texture_2d(self.texture, (0, 0), region.width, region.height)
+            self.engine.bind_display_space_shader(scene)
+            draw_texture_2d(self.texture, (left, lower), width, height)
+            self.engine.unbind_display_space_shader()
             gpu.state.blend_set("NONE")
 
     def _tell(self):
         for warning in [*self.exporter.warnings, *self.render.warnings()]:
             if warning not in self.told:
                 self.told.add(warning)
-                print(f"Penumbra: {warning}")
+                self.engine.report({"WARNING"}, warning)
 
     def _poll(self):
         """Runs on Blender's thread; asks for a redraw where there is something new to show."""
-        if not self.alive:
-            return None
         try:
-            if self.render.has_news():
+            if self.alive and self.render.has_news():
                 self.engine.tag_redraw()
         except ReferenceError:
             # Blender has freed the engine.
             self.free()
-            return None
-        return _POLL
+        return _POLL if self.alive else None
 
 
-def settings_spp(scene):
-    """Samples at which a viewport is done."""
-    return scene.penumbra.viewport_spp or 1024
-
-
-def _view(context):
-    """The view as plain data: matrices and size, and the lens where it is a camera's."""
-    region, data = context.region, context.region_data
+def _view(context, depsgraph):
+    """The view as plain data: matrices and size, and border and lens of a camera's."""
+    region, data, space = context.region, context.region_data, context.space_data
+    rows = lambda matrix: [list(row) for row in matrix]
     view = {
-        "size": (region.width, region.height),
-        "matrix": tuple(tuple(row) for row in data.view_matrix.inverted()),
-        "window": tuple(tuple(row) for row in data.window_matrix),
+        "size": [max(region.width, 1), max(region.height, 1)],
+        "matrix": rows(data.view_matrix.inverted()),
+        "window": rows(data.window_matrix),
         "orthographic": not data.is_perspective,
-        "clip_start": context.space_data.clip_start,
-        "clip_end": context.space_data.clip_end,
+        "clip_start": space.clip_start,
+        "clip_end": space.clip_end,
     }
+    scene = depsgraph.scene
+    through = scene.camera if data.view_perspective == "CAMERA" else None
+    if through is not None and through.type == "CAMERA":
+        own = camera.camera(through.evaluated_get(depsgraph), scene)
+        view["orthographic"] = own["type"] == "ORTHO"
+        view["clip_start"], view["clip_end"] = own["clip_start"], own["clip_end"]
+        if "dof" in own:
+            view["dof"] = [own["dof"], own["lens"]]
+        if scene.render.use_border:
+            view["border"] = _camera_border(context, through, scene)
+    elif space.use_render_border:
+        edges = (space.render_border_min_x, space.render_border_min_y, space.render_border_max_x,
+                 space.render_border_max_y)
+        view["border"] = _rectangle(view["size"], [edge * view["size"][i % 2] for i, edge in enumerate(edges)])
+    if view.get("border", 0) is None:
+        del view["border"]
     return view
+
+
+def _camera_border(context, obj, scene):
+    """The border within the camera's frame, in pixels of the region."""
+    frame = [obj.matrix_world @ corner for corner in obj.data.view_frame(scene=scene)]
+    corners = [location_3d_to_region_2d(context.region, context.region_data, corner) for corner in frame]
+    if any(corner is None for corner in corners):
+        return None
+    low = [min(corner[i] for corner in corners) for i in (0, 1)]
+    high = [max(corner[i] for corner in corners) for i in (0, 1)]
+    render = scene.render
+    edges = (render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y)
+    size = (context.region.width, context.region.height)
+    return _rectangle(size, [low[i % 2] + edge * (high[i % 2] - low[i % 2]) for i, edge in enumerate(edges)])
+
+
+def _rectangle(size, edges):
+    """Left, top, width and height in whole pixels of what lies within the picture; None for nothing."""
+    left, lower, right, upper = (min(max(int(edge), 0), size[i % 2]) for i, edge in enumerate(edges))
+    if right <= left or upper <= lower:
+        return None
+    return [left, size[1] - upper, right - left, upper - lower]
+
+
+def _place(view):
+    """Where the picture of a view is drawn: left, lower edge, width and height."""
+    width, height = view["size"]
+    if "border" not in view:
+        return (0, 0, width, height)
+    left, top, w, h = view["border"]
+    return (left, height - top - h, w, h)

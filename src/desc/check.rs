@@ -22,7 +22,7 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         rule(mesh.attributes.iter().all(|a| attribute_fits(&a.values, points, corners)), "wrong count of attributes")?;
         rule(mesh.material_slots.as_ref().is_none_or(|s| s.len() == mesh.triangles.len()), "wrong count of slots")?;
     }
-    scene.rounds.iter().try_for_each(check_rounds)?;
+    scene.rounds.iter().try_for_each(|rounds| check_rounds(rounds))?;
     for instance in &scene.instances {
         match instance.shape {
             ShapeRef::Mesh(i) => index(i, scene.meshes.len(), &instance.place, "mesh")?,

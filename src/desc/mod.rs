@@ -32,6 +32,8 @@ pub use render::RenderDesc;
 pub use rounds::{RoundsDesc, Strand};
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
+use std::sync::Arc;
+
 use crate::error::Place;
 
 /// A scene as authored, at one frame.
@@ -42,9 +44,9 @@ pub struct SceneDesc {
     /// Cameras, in the order of the file. The door has already chosen none of them.
     pub cameras: Vec<CameraDesc>,
     /// Meshes; shared by any number of instances.
-    pub meshes: Vec<MeshDesc>,
+    pub meshes: Vec<Arc<MeshDesc>>,
     /// Strands and balls; shared by any number of instances.
-    pub rounds: Vec<RoundsDesc>,
+    pub rounds: Vec<Arc<RoundsDesc>>,
     /// Shapes placed in the world.
     pub instances: Vec<InstanceDesc>,
     /// Materials.
@@ -69,7 +71,7 @@ impl SceneDesc {
     /// The mesh that `instance` shows; `None` for another kind of shape.
     pub fn mesh(&self, instance: &InstanceDesc) -> Option<&MeshDesc> {
         match instance.shape {
-            ShapeRef::Mesh(i) => self.meshes.get(i as usize),
+            ShapeRef::Mesh(i) => self.meshes.get(i as usize).map(|mesh| &**mesh),
             ShapeRef::Rounds(_) => None,
         }
     }
@@ -77,7 +79,7 @@ impl SceneDesc {
     /// The strands or balls that `instance` shows; `None` for another kind of shape.
     pub fn rounds(&self, instance: &InstanceDesc) -> Option<&RoundsDesc> {
         match instance.shape {
-            ShapeRef::Rounds(i) => self.rounds.get(i as usize),
+            ShapeRef::Rounds(i) => self.rounds.get(i as usize).map(|rounds| &**rounds),
             ShapeRef::Mesh(_) => None,
         }
     }

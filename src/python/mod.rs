@@ -13,6 +13,7 @@ mod picture;
 mod render;
 mod scene;
 mod tables;
+mod viewport;
 
 use pyo3::prelude::*;
 
@@ -27,6 +28,8 @@ mod _engine {
     use super::scene::Scene;
     #[pymodule_export]
     use super::tables::{passes, settings};
+    #[pymodule_export]
+    use super::viewport::Viewport;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]

@@ -82,7 +82,7 @@ fn load(path: &Path, options: &ImportOptions) -> Result<(SceneDesc, Warnings)> {
 }
 
 /// The settings that were given by name, and whether passes were among them.
-fn settings_of(given: Option<&Bound<'_, PyDict>>) -> PyResult<(Settings, bool)> {
+pub(super) fn settings_of(given: Option<&Bound<'_, PyDict>>) -> PyResult<(Settings, bool)> {
     let mut settings = Settings::default();
     let (mut passes, mut spp) = (false, false);
     for (name, value) in given.into_iter().flatten() {

@@ -18,8 +18,8 @@ pub fn world_bounds(scene: &SceneDesc) -> Option<(DVec3, DVec3)> {
         let balls = rounds.points.iter().zip(&rounds.radii);
         union(balls.map(|(&p, &r)| (point(p) - f64::from(r), point(p) + f64::from(r))))
     };
-    let meshes: Vec<_> = scene.meshes.iter().map(of_mesh).collect();
-    let rounds: Vec<_> = scene.rounds.iter().map(of_rounds).collect();
+    let meshes: Vec<_> = scene.meshes.iter().map(|mesh| of_mesh(mesh)).collect();
+    let rounds: Vec<_> = scene.rounds.iter().map(|rounds| of_rounds(rounds)).collect();
     union(scene.instances.iter().filter_map(|instance| {
         let (min, max) = match instance.shape {
             ShapeRef::Mesh(i) => meshes[i as usize]?,
@@ -100,7 +100,7 @@ mod tests {
             visibility: Visibility::ALL,
             links: LightLinks::default(),
         };
-        let scene = SceneDesc { meshes: vec![mesh], instances: vec![instance], ..SceneDesc::default() };
+        let scene = SceneDesc { meshes: vec![mesh.into()], instances: vec![instance], ..SceneDesc::default() };
         for aspect in [0.3, 1.0, 3.0] {
             let to_camera = framing_camera(&scene, aspect).transform.inverse();
             for p in [[-1.0, 0.0, -3.0], [4.0, 0.1, 2.0], [0.0, 2.0, 0.0]] {

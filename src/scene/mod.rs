@@ -19,7 +19,7 @@ pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::Material;
 pub use path_state::{PathState, RayKind};
-pub use prepare::{Prepared, View, prepare};
+pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;

@@ -1,5 +1,6 @@
 //! From what was authored to what is traced: the only place that sees both sides.
 
+mod cache;
 mod camera;
 mod dome;
 mod emissive;
@@ -21,12 +22,13 @@ use std::time::{Duration, Instant};
 use super::effects::emits;
 use super::framing::world_bounds;
 use super::{Effects, Ids, Scene};
-use crate::desc::{self, InstanceDesc, LightDesc, LightKind, SceneDesc, Visibility};
+use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
 use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
 use crate::math::{DAffine3, DVec3};
 use crate::settings::{LightSelection, Settings};
+pub use cache::Cache;
 use emissive::Shared;
 use links::Links;
 use materials::Materials;
@@ -56,7 +58,15 @@ pub struct Prepared {
 ///
 /// # Errors
 /// An index of `desc` that is out of range, an unknown camera or light group, a picture without size.
-pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
+pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
+    prepare_with(desc, view, settings, &mut Cache::default())
+}
+
+/// The same, with what `cache` has kept of the scene before.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache: &mut Cache) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
     let (camera_desc, whole) = camera::choose(&desc, view, &mut warnings)?;
@@ -71,7 +81,7 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
-    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, &mut warnings);
+    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, cache, &mut warnings);
     let build_time = start.elapsed();
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 
@@ -115,6 +125,23 @@ pub fn prepare(mut desc: SceneDesc, view: &View, settings: &Settings) -> Result<
         asked,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+}
+
+impl Scene {
+    /// Looks at the same scene through another camera, or at another size: nothing else is prepared again.
+    /// `render` says what part of a picture of `whole` pixels is wanted.
+    ///
+    /// # Errors
+    /// A camera or a part that makes no picture; the scene then stays as it was.
+    pub fn look(&mut self, camera: &CameraDesc, render: &RenderDesc, whole: [u32; 2]) -> Result<()> {
+        let desc = SceneDesc { cameras: vec![camera.clone()], render: render.clone(), ..SceneDesc::default() };
+        let view = View { camera: None, size: Some(whole) };
+        let (camera, whole) = camera::choose(&desc, &view, &mut Warnings::new())?;
+        self.size = cropped(&desc, whole)?;
+        self.camera = camera::prepare(&camera, render, whole, self.origin);
+        self.exposure = camera::exposure(&camera);
+        Ok(())
+    }
 }
 
 /// Size of the part of a picture of `whole` that is wanted.

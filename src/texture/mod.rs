@@ -1,11 +1,12 @@
 //! Images looked up along rays (mip pyramids in the stored size, filtered by the ray's footprint),
-//! textures computed from a position ([`procedural`]), and graphs of both ([`graph`]).
+//! textures computed from a position ([`procedural`]) or a direction ([`sky`]), and graphs of them ([`graph`]).
 
 pub mod graph;
 mod image;
 mod lookup;
 pub mod procedural;
 mod pyramid;
+pub mod sky;
 mod srgb;
 mod texel;
 mod transform;

@@ -10,8 +10,8 @@ import os
 import sys
 import traceback
 
+import bpy  # isort: skip (what follows is found through it)
 import addon_utils
-import bpy
 
 EXTENSION = "bl_ext.user_default.penumbra"
 

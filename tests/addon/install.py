@@ -5,8 +5,8 @@
 
 import sys
 
+import bpy  # isort: skip (what follows is found through it)
 import addon_utils
-import bpy
 
 bpy.ops.wm.read_factory_settings(use_empty=True)
 path = sys.argv[1]

@@ -186,3 +186,130 @@ def export_command(path):
 
     _scene_of("point_soft")
     return operator.command([path])
+
+
+def cancel(folder):
+    """F12 that is stopped: seconds from the wish to the end, and whether a picture was left."""
+    from bl_ext.user_default.penumbra import engine
+
+    _scene((320, 240), spp=100_000)
+    _room()
+    kind = engine.PenumbraRenderEngine
+    asked = {}
+    observe = kind._observe
+
+    def impatient(self, progress):
+        observe(self, progress)
+        if progress is not None and progress["spp"] >= 2 and "at" not in asked:
+            asked["at"] = time.perf_counter()
+        return "at" in asked
+
+    kind._observe = impatient
+    path = os.path.join(folder, "cancelled.exr")
+    try:
+        _render(path)
+    finally:
+        kind._observe = observe
+    return [time.perf_counter() - asked["at"], path]
+
+
+def animation(folder):
+    """Three frames of a cube that moves."""
+    scene = _scene(spp=4)
+    _room()
+    cube = bpy.data.objects["Cube"]
+    for frame, x in ((1, -1.0), (3, 1.0)):
+        cube.location.x = x
+        cube.keyframe_insert("location", frame=frame)
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.filepath = os.path.join(folder, "frame-")
+    bpy.ops.render.render(animation=True)
+    return sorted(name for name in os.listdir(folder) if name.startswith("frame-"))
+
+
+def _complaint(work):
+    """What Blender says where a render fails."""
+    try:
+        work()
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def no_camera(folder):
+    """A scene without camera."""
+    _scene()
+    bpy.context.scene.camera = None
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
+def empty_border(folder):
+    """A border that holds no pixel."""
+    scene = _scene()
+    scene.render.use_border = True
+    scene.render.border_min_x = scene.render.border_max_x = 0.5
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
+def empty_scene(folder):
+    """Nothing but a camera: the world alone."""
+    _scene()
+    path = os.path.join(folder, "empty.exr")
+    _render(path)
+    return path
+
+
+def bad_input(folder):
+    """A missing texture, a vertex that is no number, slots without materials, an unknown node."""
+    _scene(spp=2)
+    _room()
+    plane = bpy.data.objects["Plane"]
+    material = bpy.data.materials.new("Wood")
+    material.use_nodes = True
+    tree = material.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("wood", 1, 1)
+    texture.image.source = "FILE"
+    texture.image.filepath = "/no/such/wood.png"
+    bevel = tree.nodes.new("ShaderNodeBevel")
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    tree.links.new(bevel.outputs["Normal"], shader.inputs["Normal"])
+    plane.data.materials.append(material)
+    cube = bpy.data.objects["Cube"]
+    cube.data.vertices[0].co.x = float("nan")
+    for _ in range(100):
+        cube.data.materials.append(None)
+    path = os.path.join(folder, "bad.exr")
+    _render(path)
+    return path
+
+
+def raises(folder):
+    """An exception inside render()."""
+    from bl_ext.user_default.penumbra import engine
+
+    _scene()
+    kind = engine.PenumbraRenderEngine
+    render = kind._render
+    kind._render = lambda self, depsgraph: 1 / 0
+    try:
+        return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+    finally:
+        kind._render = render
+
+
+def border(folder):
+    """A part of the picture, in place and cropped to: paths of both and of the whole."""
+    scene = _scene((64, 48), spp=4)
+    _room()
+    paths = []
+    for name, use, crop in (("whole", False, False), ("part", True, False), ("crop", True, True)):
+        render = scene.render
+        render.use_border, render.use_crop_to_border = use, crop
+        render.border_min_x, render.border_max_x = 0.25, 0.75
+        render.border_min_y, render.border_max_y = 0.5, 1.0
+        paths.append(os.path.join(folder, f"{name}.exr"))
+        _render(paths[-1])
+    return paths

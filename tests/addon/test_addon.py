@@ -43,3 +43,68 @@ def test_f12_fills_every_pass(blender, tmp_path):
     assert np.abs(direct - product).max() < 1e-3 * direct.max()
     occlusion = layers["ViewLayer.Ambient Occlusion.R"]
     assert 0.2 < occlusion.max() <= 1.001 and occlusion.min() >= 0.0
+
+
+@pytest.mark.parametrize(
+    "name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "falloff_linear", "world_image", "mesh_light",
+             "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured"]
+)
+def test_pictures_are_those_of_cycles(blender, tmp_path, name):
+    paths, _ = blender.run("side_by_side", name, tmp_path, 64, 48)
+    cycles, ours = [read(path) for path in paths]
+    for layer in ("Combined", "Diffuse Direct", "Diffuse Color", "Ambient Occlusion"):
+        names = [f"ViewLayer.{layer}.{c}" for c in "RGB"]
+        short = {"Diffuse Direct": "DiffDir", "Diffuse Color": "DiffCol", "Ambient Occlusion": "AO"}.get(layer, layer)
+        theirs = [cycles.get(n, cycles.get(f"ViewLayer.{short}.{n[-1]}")) for n in names]
+        expected, found = np.dstack(theirs), np.dstack([ours[n] for n in names])
+        # The noise of the two means: that of differences between pixels, which edges make no smaller.
+        noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
+        assert abs(found.mean() - expected.mean()) <= 0.004 * expected.mean() + 4.0 * noise, (name, layer)
+
+
+def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
+    (seconds, path), _ = blender.run("cancel", tmp_path)
+    assert seconds < 5.0
+    layers = read(path)
+    assert layers["ViewLayer.Combined.R"].mean() > 0.01
+
+
+def test_an_animation_has_its_frames(blender, tmp_path):
+    frames, _ = blender.run("animation", tmp_path)
+    assert frames == ["frame-0001.png", "frame-0002.png", "frame-0003.png"]
+    pictures = [oiio.ImageBuf(str(tmp_path / name)).get_pixels(oiio.FLOAT) for name in frames]
+    assert np.abs(pictures[0] - pictures[2]).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    ("job", "words"),
+    [("no_camera", "no camera"), ("empty_border", "too small"), ("raises", "division by zero")],
+)
+def test_what_is_wrong_is_said_in_blender(blender, tmp_path, job, words):
+    said, output = blender.run(job, tmp_path)
+    assert words in said + output
+    if job != "raises":
+        assert "Traceback" not in output
+
+
+def test_an_empty_scene_is_its_world(blender, tmp_path):
+    path, _ = blender.run("empty_scene", tmp_path)
+    combined = read(path)["ViewLayer.Combined.R"]
+    assert np.ptp(combined) < 1e-6 and combined.mean() > 0.0
+
+
+def test_bad_input_is_told_and_the_rest_is_rendered(blender, tmp_path):
+    path, output = blender.run("bad_input", tmp_path)
+    assert read(path)["ViewLayer.Combined.R"].mean() > 0.01
+    for words in ("/no/such/wood.png", "not finite", "ShaderNodeBevel"):
+        assert words in output, output[-2000:]
+
+
+def test_a_border_is_a_part_of_the_picture(blender, tmp_path):
+    paths, _ = blender.run("border", tmp_path)
+    whole, part, crop = [read(path)["ViewLayer.Combined.R"] for path in paths]
+    assert whole.shape == part.shape == (48, 64) and crop.shape == (24, 32)
+    # The border is the upper half's middle; rows come from the top.
+    assert np.array_equal(part[:24, 16:48], crop)
+    assert np.abs(part[24:]).max() == 0.0
+    assert abs(crop.mean() / whole[:24, 16:48].mean() - 1.0) < 0.02

@@ -1,12 +1,17 @@
 //! Procedural textures against values that Cycles computed: `reference.py` made the tables in
 //! `reference/`, one line an evaluation.
 
+mod extremes;
 mod menus;
 mod table;
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use penumbra::math::Vec3;
 use penumbra::texture::procedural::*;
-use table::{Line, compare};
+use penumbra::texture::sky::{Atmosphere, AtmosphereSky, Preetham, ToRgb};
+use table::{Line, compare, compare_in};
 
 /// Places, sockets and colours are within this of Cycles, relative to 1 or to the value if that is larger.
 const TOLERANCE: f32 = 1e-4;
@@ -138,4 +143,68 @@ fn gabor() {
         let value = gabor.value(Vec3::new(x, y, z), &sockets);
         vec![value.value, value.phase, value.intensity]
     });
+}
+
+/// Radiance of a sky at night.
+const DARK: f32 = 1e-3;
+
+/// Skies by their parameters: tables of the same skies share them.
+type Skies = HashMap<String, AtmosphereSky>;
+
+fn sky(name: &str, skies: &mut Skies) {
+    let skies = RefCell::new(skies);
+    compare_in(name, TOLERANCE, DARK, |line| {
+        let number = |i| line.choice(i).parse::<f32>().unwrap();
+        let sky = Atmosphere {
+            scattering: menus::scattering(line.choice(0)),
+            sun_elevation: number(2),
+            sun_rotation: number(3),
+            sun_size: Some(number(4)),
+            sun_intensity: number(5),
+            altitude: number(6),
+            air: number(7),
+            aerosol: number(8),
+            ozone: number(9),
+        };
+        let mut skies = skies.borrow_mut();
+        let prepared = skies.entry(format!("{sky:?}")).or_insert_with(|| sky.prepare());
+        let direction = line.inputs().into();
+        let has_disc = line.choice(1) == "True";
+        let color = if has_disc { prepared.radiance(direction) } else { prepared.background(direction) };
+        vec![color.r, color.g, color.b]
+    });
+}
+
+#[test]
+fn skies_from_blender_5() {
+    let mut skies = Skies::new();
+    sky("sky", &mut skies);
+    sky("sun", &mut skies);
+}
+
+#[test]
+fn skies_up_to_blender_4() {
+    let mut skies = Skies::new();
+    sky("sky_4", &mut skies);
+    sky("sun_4", &mut skies);
+}
+
+fn preetham(name: &str, to_rgb: ToRgb) {
+    compare_in(name, TOLERANCE, DARK, |line| {
+        let number = |i| line.choice(i).parse::<f32>().unwrap();
+        let sun_direction = Vec3::new(number(1), number(2), number(3));
+        let sky = Preetham { sun_direction, turbidity: number(4), to_rgb };
+        let color = sky.prepare().radiance(line.inputs().into());
+        vec![color.r, color.g, color.b]
+    });
+}
+
+#[test]
+fn preetham_from_blender_5() {
+    preetham("preetham", ToRgb::Blender5);
+}
+
+#[test]
+fn preetham_up_to_blender_4() {
+    preetham("preetham_4", ToRgb::Blender4);
 }

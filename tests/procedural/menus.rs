@@ -1,6 +1,7 @@
 //! Blender's names of what is picked from menus.
 
 use penumbra::texture::procedural::*;
+use penumbra::texture::sky::Scattering;
 
 pub fn dimensions(name: &str) -> Dimensions {
     match name {
@@ -76,6 +77,15 @@ pub fn gradient(name: &str) -> Gradient {
         "RADIAL" => Gradient::Radial,
         "QUADRATIC_SPHERE" => Gradient::QuadraticSphere,
         "SPHERICAL" => Gradient::Spherical,
+        _ => panic!("{name}"),
+    }
+}
+
+pub fn scattering(name: &str) -> Scattering {
+    match name {
+        "NISHITA" => Scattering::Nishita,
+        "SINGLE_SCATTERING" => Scattering::Single,
+        "MULTIPLE_SCATTERING" => Scattering::Multiple,
         _ => panic!("{name}"),
     }
 }

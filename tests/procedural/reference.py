@@ -15,6 +15,7 @@ import sys
 import tempfile
 
 import bpy
+import mathutils
 import numpy as np
 import OpenImageIO as oiio
 
@@ -24,9 +25,10 @@ WIDTH = 64
 class Texture:
     """A node: its menus, its sockets with values worth trying, its outputs."""
 
-    def __init__(self, node, menus, sockets, outputs, rows, extent=6.0):
+    def __init__(self, node, menus, sockets, outputs, rows, extent=6.0, inputs=None):
         self.node, self.menus, self.sockets, self.outputs = node, menus, sockets, outputs
         self.rows, self.extent = rows, extent
+        self.inputs = inputs
 
 
 POSITION = {"Vector": 3}
@@ -61,7 +63,37 @@ def wave_menus():
     return bands + rings
 
 
+def atmospheres(disc):
+    """Skies by name of the menu entry; sun elevation, rotation, size, intensity, altitude, densities."""
+    names = ["sun_elevation", "sun_rotation", "sun_size", "sun_intensity", "altitude"]
+    names += ["air_density", DUST, "ozone_density"]
+    values = [
+        (0.2617994, 0.0, 0.3, 1.0, 100.0, 1.0, 1.0, 1.0),
+        (0.9, 2.3, 0.8, 0.3, 0.0, 1.0, 1.0, 1.0),
+        (0.05, -4.0, 0.25, 2.0, 3000.0, 2.5, 0.0, 3.0),
+        (1.9, 1.0, 0.2, 1.0, 20.0, 0.3, 4.0, 0.0),
+        (-0.1, 0.7, 0.4, 1.0, 55000.0, 1.0, 6.0, 1.0),
+        (-1.2, 9.0, 0.4, 1.0, 500.0, 1.0, 1.0, 1.0),
+    ]
+    kinds = ["SINGLE_SCATTERING", "MULTIPLE_SCATTERING"] if bpy.app.version >= (5, 0, 0) else ["NISHITA"]
+    return [dict(sky_type=kind, sun_disc=disc, **dict(zip(names, v))) for kind in kinds for v in values]
+
+
+def preethams():
+    suns = [(0.0, 0.0, 1.0, 2.2), (0.6, -0.64, 0.48, 1.0), (-0.8, 0.6, 0.0, 5.0), (0.36, 0.48, -0.8, 10.0)]
+    return [dict(sky_type="PREETHAM", sun_direction=sun[:3], turbidity=sun[3]) for sun in suns]
+
+
+def directions(texture, count):
+    rows = np.random.default_rng(20).normal(size=(count, 3))
+    return {"Vector": (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)}
+
+
+DUST = "aerosol_density" if bpy.app.version >= (5, 0, 0) else "dust_density"
+
 TEXTURES = {
+    "sky": Texture("ShaderNodeTexSky", atmospheres(disc=False), {"Vector": 3}, {"Color": 3}, rows=6, inputs=directions),
+    "preetham": Texture("ShaderNodeTexSky", preethams(), {"Vector": 3}, {"Color": 3}, rows=12, inputs=directions),
     "noise": Texture(
         "ShaderNodeTexNoise",
         menus(
@@ -80,7 +112,7 @@ TEXTURES = {
             "Distortion": [0.0, 0.0, 0.5, 3.0, -1.2],
         },
         {"Color": 3},
-        rows=12,
+        rows=7,
     ),
     "voronoi": Texture(
         "ShaderNodeTexVoronoi",
@@ -96,7 +128,7 @@ TEXTURES = {
             "Randomness": [1.0, 0.0, 0.6, 1.5],
         },
         {"Distance": 1, "Color": 3, "Position": 3, "W": 1, "Radius": 1},
-        rows=5,
+        rows=3 if bpy.app.version >= (5, 0, 0) else 2,
     ),
     "wave": Texture(
         "ShaderNodeTexWave",
@@ -111,7 +143,7 @@ TEXTURES = {
             "Phase Offset": [0.0, 1.0, -40.0],
         },
         {"Factor": 1},
-        rows=12,
+        rows=6,
     ),
     "checker": Texture(
         "ShaderNodeTexChecker", [{}], {**POSITION, "Scale": [1.0, 5.0, -3.7, 0.0, 1e6]}, {"Factor": 1}, rows=120
@@ -132,7 +164,7 @@ TEXTURES = {
             "Row Height": [0.25, 0.9, 0.01],
         },
         {"Color": 3, "Factor": 1},
-        rows=40,
+        rows=15,
     ),
     "gradient": Texture(
         "ShaderNodeTexGradient",
@@ -141,7 +173,7 @@ TEXTURES = {
         ),
         {**POSITION},
         {"Factor": 1},
-        rows=24,
+        rows=12,
         extent=1.2,
     ),
     "magic": Texture(
@@ -149,7 +181,7 @@ TEXTURES = {
         menus(turbulence_depth=list(range(11))),
         {**POSITION, "Scale": [5.0, 1.0, -3.7, 0.0], "Distortion": [1.0, 0.0, -0.7, 3.0]},
         {"Color": 3, "Factor": 1},
-        rows=16,
+        rows=10,
     ),
     "white_noise": Texture(
         "ShaderNodeTexWhiteNoise", menus(noise_dimensions=DIMENSIONS), {**PLACE}, {"Value": 1, "Color": 3}, rows=24
@@ -252,16 +284,14 @@ def make_grid(texture, inputs, count):
     return row * WIDTH + column
 
 
-def render(texture):
+def render_planes():
+    """One sample a pixel: channels by name, rows from the bottom."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.resolution_percentage = 100
     scene.cycles.samples = 1
     scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type = "BOX"
-    for name, channels in texture.outputs.items():
-        aov = bpy.context.view_layer.aovs.add()
-        aov.name, aov.type = "out " + name, "COLOR" if channels == 3 else "VALUE"
     image = scene.render.image_settings
     if hasattr(image, "media_type"):
         image.media_type = "MULTI_LAYER_IMAGE"
@@ -277,6 +307,14 @@ def render(texture):
                 planes[name] = pixels[::-1, :, i].ravel()
             part += 1
         opened.close()
+    return planes
+
+
+def render(texture):
+    for name, channels in texture.outputs.items():
+        aov = bpy.context.view_layer.aovs.add()
+        aov.name, aov.type = "out " + name, "COLOR" if channels == 3 else "VALUE"
+    planes = render_planes()
     columns = []
     for name, channels in texture.outputs.items():
         columns += [planes[f"ViewLayer.out {name}.{c}"] for c in ("RGB" if channels == 3 else "X")]
@@ -292,19 +330,70 @@ def write(path, texture, inputs, outputs):
         for i, values in enumerate(outputs):
             chosen = texture.menus[i // texture.rows]
             numbers = np.concatenate([numbers[i] for numbers in inputs.values()])
-            file.write(f"{' '.join(str(c) for c in chosen.values())} | {text(numbers)} | {text(values)}\n")
+            file.write(f"{' '.join(str(c).strip('()').replace(',', '') for c in chosen.values())} | {text(numbers)} | {text(values)}\n")
+
+
+def render_world(chosen, picture):
+    """A look at the sun, of the sky or of the directions themselves."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.world = bpy.data.worlds.new("world")
+    if bpy.app.version < (5, 0, 0):
+        scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    tree.nodes.clear()
+    if picture == "sky":
+        source = tree.nodes.new("ShaderNodeTexSky")
+        for name, value in chosen.items():
+            setattr(source, name, value)
+        color = source.outputs[0]
+    else:
+        source = tree.nodes.new("ShaderNodeVectorMath")
+        source.operation = "MULTIPLY_ADD"
+        source.inputs[1].default_value = source.inputs[2].default_value = (0.5, 0.5, 0.5)
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], source.inputs[0])
+        color = source.outputs[0]
+    background, output = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeOutputWorld")
+    tree.links.new(color, background.inputs["Color"])
+    tree.links.new(background.outputs[0], output.inputs["Surface"])
+    up, turn = chosen["sun_elevation"], chosen["sun_rotation"]
+    sun = mathutils.Vector((np.cos(up) * np.sin(turn), np.cos(up) * np.cos(turn), np.sin(up)))
+    camera = bpy.data.cameras.new("camera")
+    camera.angle = 1.2 * chosen["sun_size"]
+    scene.camera = bpy.data.objects.new("camera", camera)
+    scene.camera.rotation_euler = sun.to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(scene.camera)
+    scene.render.resolution_x = scene.render.resolution_y = 4
+    planes = render_planes()
+    return np.stack([planes[f"ViewLayer.Combined.{c}"] for c in "RGB"], 1)
+
+
+def write_suns(folder):
+    """The sun's disc, which only a world shows."""
+    menus = atmospheres(disc=True)
+    texture = Texture("ShaderNodeTexSky", menus, {"Vector": 3}, {"Color": 3}, rows=4)
+    both = [[render_world(chosen, picture)[1::4] for chosen in menus] for picture in ("directions", "sky")]
+    seen, colors = (np.concatenate(pictures) for pictures in both)
+    name = "sun" if bpy.app.version >= (5, 0, 0) else "sun_4"
+    write(os.path.join(folder, f"{name}.txt"), texture, {"Vector": seen * 2 - 1}, colors)
 
 
 def main(folder, names):
+    if not names or "sun" in names:
+        write_suns(folder)
     for name in names or TEXTURES:
+        if name == "sun":
+            continue
         texture = TEXTURES[name]
         if not hasattr(bpy.types, texture.node):
             continue
         bpy.ops.wm.read_factory_settings(use_empty=True)
         count = len(texture.menus) * texture.rows
-        inputs = make_inputs(texture, count)
+        inputs = (texture.inputs or make_inputs)(texture, count)
         pixels = make_grid(texture, inputs, count)
-        write(os.path.join(folder, f"{name}.txt"), texture, inputs, render(texture)[pixels])
+        # Skies, their colours and the scatter of cells changed with 5.0; all else is the same in 4.2, 4.5 and 5.0.
+        table = f"{name}_4" if name in ("preetham", "sky", "voronoi") and bpy.app.version < (5, 0, 0) else name
+        write(os.path.join(folder, f"{table}.txt"), texture, inputs, render(texture)[pixels])
 
 
 if __name__ == "__main__":

@@ -43,13 +43,13 @@ impl Builder {
 
     /// Any mesh placed by `transform`.
     pub fn instance(&mut self, mesh: MeshDesc, material: u32, transform: DAffine3) {
-        self.desc.meshes.push(mesh);
+        self.desc.meshes.push(mesh.into());
         self.place(ShapeRef::Mesh(self.desc.meshes.len() as u32 - 1), material, transform);
     }
 
     /// Strands or balls, where their points say.
     pub fn rounds(&mut self, rounds: RoundsDesc, material: u32) {
-        self.desc.rounds.push(rounds);
+        self.desc.rounds.push(rounds.into());
         self.place(ShapeRef::Rounds(self.desc.rounds.len() as u32 - 1), material, DAffine3::IDENTITY);
     }
 

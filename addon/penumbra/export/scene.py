@@ -20,18 +20,31 @@ class Exporter:
         self.scene = scene
         self.images = {}
         self.warnings = []
+        self._meshes = set()
 
-    def export(self, depsgraph, size, camera_object=None):
-        """Hands over everything of `depsgraph` for a picture of `size` pixels."""
+    def update(self, depsgraph, size, space):
+        """Hands over what changed since the last time, for a viewport of `space`."""
+        for update in depsgraph.updates:
+            if update.is_updated_geometry:
+                data = update.id.data if isinstance(update.id, bpy.types.Object) else update.id
+                if isinstance(data, bpy.types.Mesh):
+                    self._meshes.discard(_key(data))
+        self.export(depsgraph, size, space=space)
+        for key in self._meshes - self._used:
+            self.scene.remove_mesh(key)
+        self._meshes &= self._used
+
+    def export(self, depsgraph, size, camera_object=None, space=None):
+        """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows."""
         self._materials, self._material_index = [], {}
         self._objects, self._object_index = [], {}
         self._lights = []
         self._links = []
-        self._meshes = set()
+        self._used = set()
         of_instance, matrices, random_ids = [], [], []
         for instance in depsgraph.object_instances:
             obj = instance.object
-            if not instance.show_self:
+            if not instance.show_self or not _shown(instance, space):
                 continue
             if obj.type == "LIGHT":
                 self._lights.append(lights.lamp(instance, self))
@@ -98,7 +111,8 @@ class Exporter:
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
         own = obj.type == "MESH"
-        key = obj.data.as_pointer()
+        key = _key(obj.data)
+        self._used.add(key)
         if key in self._meshes:
             return key
         data = obj.data if own else obj.to_mesh()
@@ -194,6 +208,20 @@ class Exporter:
                 pixels[:, :3] = raw[:, :3] if image.channels >= 3 else raw[:, :1]
             self.scene.set_image_pixels(name, width, height, pixels.reshape(-1), image.is_float)
         return name
+
+
+def _key(data):
+    """A number for a data-block: its address, which may be that of another one before, and what it holds."""
+    counts = (len(data.vertices), len(data.loops)) if isinstance(data, bpy.types.Mesh) else ()
+    return hash((data.as_pointer(), data.name_full, *counts)) & 0x7FFF_FFFF_FFFF_FFFF
+
+
+def _shown(instance, space):
+    """False for what a viewport in local view, or with collections of its own, does not show."""
+    if space is None:
+        return True
+    obj = instance.parent if instance.is_instance else instance.object
+    return obj.original.visible_in_viewport_get(space)
 
 
 def _finite(value):

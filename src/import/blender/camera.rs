@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::document::{CameraData, RenderData};
+use super::document::{CameraData, DofData, RenderData};
 use super::transform::affine;
 use crate::desc::{CameraDesc, LensDesc, ProjectionDesc};
 use crate::error::{Place, Warnings};
@@ -45,23 +45,14 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
             perspective()
         }
     };
-    let lens = data.dof.map(|dof| {
-        // An orthographic camera's aperture is that of a lens of 1000 mm… of Cycles: 1 / (2 f).
-        let focal = if data.r#type == "ORTHO" { 1.0 } else { 1e-3 * data.lens };
-        LensDesc {
-            aperture_radius: focal / (2.0 * dof.fstop),
-            focus_distance: dof.distance,
-            blades: dof.blades,
-            rotation: dof.rotation,
-            ratio: dof.ratio,
-        }
-    });
+    let is_flat = data.r#type == "ORTHO";
+    let lens = data.dof.map(|dof| lens(&dof, data.lens, is_flat));
     CameraDesc {
         name: data.name.as_str().into(),
         place,
         transform: affine(&data.matrix),
         projection,
-        clip_near: if data.r#type == "ORTHO" { data.clip_start.max(0.0) } else { data.clip_start },
+        clip_near: if is_flat { data.clip_start.max(0.0) } else { data.clip_start },
         clip_far: data.clip_end,
         shift: [data.shift_x / frame[0], data.shift_y / frame[1]],
         lens,
@@ -71,9 +62,20 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
     }
 }
 
+/// The lens of a focal length in millimetres; parallel rays have that of a metre.
+pub(super) fn lens(dof: &DofData, focal: f64, orthographic: bool) -> LensDesc {
+    let focal = if orthographic { 1.0 } else { 1e-3 * focal };
+    LensDesc {
+        aperture_radius: focal / (2.0 * dof.fstop),
+        focus_distance: dof.distance,
+        blades: dof.blades,
+        rotation: dof.rotation,
+        ratio: dof.ratio,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::document::DofData;
     use super::*;
 
     fn made(data: CameraData, size: [u32; 2]) -> CameraDesc {

@@ -4,10 +4,8 @@
 //! some material names has the same number in all meshes.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use super::mesh::NamedMesh;
-use crate::desc::Attribute;
 
 /// Which set of UVs each name stands for.
 #[derive(Debug, Default)]
@@ -46,18 +44,8 @@ impl UvSets {
         if name.is_empty() { Some(0) } else { self.sets.get(name).copied() }
     }
 
-    /// The UV sets of `mesh`: the one to render with, then the named ones; 0 everywhere for one that it
-    /// lacks, as in Cycles.
-    pub fn of(&self, mesh: &NamedMesh) -> Vec<Attribute<[f32; 2]>> {
-        let maps = &mesh.mesh.uvs;
-        let none = || Attribute::Point(vec![[0.0, 1.0]; mesh.mesh.points.len()]);
-        let named = |name: &String| {
-            let index = mesh.uv_names.iter().position(|known: &Arc<str>| **known == **name);
-            index.and_then(|index| maps.get(index).cloned()).unwrap_or_else(none)
-        };
-        match maps.first() {
-            None if self.names.is_empty() => Vec::new(),
-            first => std::iter::once(first.cloned().unwrap_or_else(none)).chain(self.names.iter().map(named)).collect(),
-        }
+    /// Names of the sets from 1 on.
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 }

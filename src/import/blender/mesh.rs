@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
+use crate::import::tangents;
 
 /// The arrays of an evaluated mesh, as `foreach_get` fills them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,9 +43,54 @@ pub struct LayerArray<'a> {
 #[derive(Clone, Debug)]
 pub struct NamedMesh {
     /// The mesh.
-    pub mesh: MeshDesc,
+    pub mesh: Arc<MeshDesc>,
     /// Names of its UV maps, the one to render with first.
     pub uv_names: Vec<Arc<str>>,
+    /// The mesh as materials asked for it last.
+    dressed: Option<(Dress, Arc<MeshDesc>)>,
+}
+
+/// What materials want of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dress {
+    /// Names of UV maps beside the one to render with.
+    pub uv_maps: Vec<String>,
+    /// Tangents of the UV map to render with.
+    pub tangents: bool,
+}
+
+impl NamedMesh {
+    /// The mesh with what materials want of it; the same one as long as they want the same.
+    pub fn dressed(&mut self, dress: &Dress) -> Arc<MeshDesc> {
+        if let Some((known, mesh)) = &self.dressed
+            && known == dress
+        {
+            return mesh.clone();
+        }
+        let mesh = if *dress == Dress::default() { self.mesh.clone() } else { Arc::new(self.dress(dress)) };
+        self.dressed = Some((dress.clone(), mesh.clone()));
+        mesh
+    }
+
+    fn dress(&self, dress: &Dress) -> MeshDesc {
+        let mut mesh = MeshDesc::clone(&self.mesh);
+        if dress.tangents
+            && let Some(uvs) = mesh.uvs.first()
+        {
+            mesh.tangents = tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles);
+        }
+        let none = || Attribute::Point(vec![[0.0, 1.0]; mesh.points.len()]);
+        let named = |name: &String| {
+            let index = self.uv_names.iter().position(|known| **known == **name);
+            index.and_then(|index| self.mesh.uvs.get(index).cloned()).unwrap_or_else(none)
+        };
+        if !dress.uv_maps.is_empty() {
+            // 0 everywhere for a map that it lacks, as in Cycles.
+            let first = self.mesh.uvs.first().cloned().unwrap_or_else(none);
+            mesh.uvs = std::iter::once(first).chain(dress.uv_maps.iter().map(named)).collect();
+        }
+        mesh
+    }
 }
 
 /// The mesh of `arrays`, with UV maps and colour attributes.
@@ -117,7 +163,7 @@ pub fn mesh(
         material_slots,
         motion: Vec::new(),
     };
-    Ok(NamedMesh { mesh, uv_names: uvs.iter().map(|layer| layer.name.into()).collect() })
+    Ok(NamedMesh { mesh: mesh.into(), dressed: None, uv_names: uvs.iter().map(|layer| layer.name.into()).collect() })
 }
 
 /// Corners of the triangles whose vertices are all finite, and which triangles those are; `None`

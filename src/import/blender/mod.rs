@@ -17,6 +17,7 @@ mod random;
 mod scene;
 mod stamp;
 mod transform;
+mod view;
 mod world;
 
 pub use document::{
@@ -28,3 +29,4 @@ pub use mesh::{LayerArray, MeshArrays};
 pub use nodes::{NodeData, SocketData, TreeData, Value};
 pub use scene::BlenderScene;
 pub(super) use stamp::{Moment, Stamp};
+pub use view::ViewData;

@@ -6,11 +6,11 @@ use super::document::Document;
 use super::image::{ImageSource, Images};
 use super::layers::UvSets;
 use super::light::LampShader;
-use super::mesh::{self, LayerArray, MeshArrays, NamedMesh};
+use super::mesh::{self, Dress, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
 use super::transform::affine_of_floats;
 use super::{camera, light, material, nodes, random, world};
-use crate::desc::{InstanceDesc, LightLinks, MeshDesc, ObjectInfo, SceneDesc, ShapeRef};
+use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -102,22 +102,28 @@ impl BlenderScene {
         }
     }
 
+    /// The UV maps that materials name.
+    fn uv_sets(&self) -> UvSets {
+        let trees = self.document.materials.iter().filter_map(|material| material.nodes.as_ref());
+        UvSets::new(trees.flat_map(TreeData::uv_map_names), self.meshes.values())
+    }
+
     /// The scene as authored.
     ///
     /// # Errors
     /// None so far: what can't be used is told and replaced.
-    pub fn scene(&self, warnings: &mut Warnings) -> Result<SceneDesc> {
-        let (document, place) = (&self.document, self.place());
+    pub fn scene(&mut self, warnings: &mut Warnings) -> Result<SceneDesc> {
+        let place = self.place();
         let mut desc = SceneDesc { place: place.clone(), ..SceneDesc::default() };
+        let of_object = self.add_instances(&mut desc, warnings);
+        let document = &self.document;
         desc.render = document.render.desc();
         if let Some(data) = &document.camera {
             desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
             desc.render.camera = Some(data.name.as_str().into());
         }
         let mut images = Images::new(&document.images, &self.images, &place, document.version);
-        let names = document.materials.iter().filter_map(|m| m.nodes.as_ref()).flat_map(TreeData::uv_map_names);
-        let uv_sets = UvSets::new(names, self.meshes.values());
-        let of_object = self.add_instances(&uv_sets, &mut desc, warnings);
+        let uv_sets = self.uv_sets();
         material::materials(document, &mut images, &uv_sets, &mut desc, warnings);
         self.add_lights(&of_object, &mut desc, &mut images, warnings);
         (desc.images, desc.textures) = images.finish(warnings);
@@ -125,8 +131,10 @@ impl BlenderScene {
     }
 
     /// Adds what is placed, and the meshes of it; returns the instances of each object.
-    fn add_instances(&self, uv_sets: &UvSets, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
+    fn add_instances(&mut self, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
         let document = &self.document;
+        let trees = || document.materials.iter().filter_map(|material| material.nodes.as_ref());
+        let dress = Dress { uv_maps: self.uv_sets().names().to_vec(), tangents: trees().any(TreeData::needs_tangents) };
         let mut index_of: HashMap<u64, u32> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
         let mut lost = 0;
@@ -135,10 +143,10 @@ impl BlenderScene {
                 lost += 1;
                 continue;
             };
-            let Some(mesh) = self.meshes.get(&data.mesh) else { continue };
+            let Some(mesh) = self.meshes.get_mut(&data.mesh) else { continue };
             let index = *index_of.entry(data.mesh).or_insert_with(|| {
                 warnings.extend(self.of_meshes.get(&data.mesh).cloned().unwrap_or_default());
-                desc.meshes.push(MeshDesc { uvs: uv_sets.of(mesh), ..mesh.mesh.clone() });
+                desc.meshes.push(mesh.dressed(&dress));
                 desc.meshes.len() as u32 - 1
             });
             of_object[object as usize].push(desc.instances.len() as u32);

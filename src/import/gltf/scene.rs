@@ -116,7 +116,7 @@ impl Builder<'_> {
             scene.lights.extend(world);
         }
         lights.tell_of_lost(warnings);
-        scene.meshes = meshes.meshes;
+        scene.meshes = meshes.meshes.into_iter().map(Into::into).collect();
         Ok(scene)
     }
 

@@ -29,11 +29,11 @@ pub(super) fn place(
     for built in shapes.built {
         refs.push(built.map(|built| match built {
             Built::Mesh(mesh) => {
-                scene.meshes.push(mesh);
+                scene.meshes.push(mesh.into());
                 ShapeRef::Mesh(scene.meshes.len() as u32 - 1)
             }
             Built::Rounds(rounds) => {
-                scene.rounds.push(rounds);
+                scene.rounds.push(rounds.into());
                 ShapeRef::Rounds(scene.rounds.len() as u32 - 1)
             }
         }));

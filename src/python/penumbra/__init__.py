@@ -12,9 +12,9 @@ import os
 import tempfile
 
 from . import _engine
-from ._engine import Picture, Scene, __version__, passes, settings
+from ._engine import Picture, Scene, Viewport, __version__, passes, settings
 
-__all__ = ["Picture", "Scene", "__version__", "passes", "render", "settings"]
+__all__ = ["Picture", "Scene", "Viewport", "__version__", "passes", "render", "settings"]
 
 
 def render(scene, **keywords):

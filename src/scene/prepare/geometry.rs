@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::cache::{Cache, Ready};
 use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
 use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef};
@@ -30,6 +31,7 @@ pub fn prepare(
     origin: DVec3,
     materials: &[Material],
     links: &Links,
+    cache: &mut Cache,
     warnings: &mut Warnings,
 ) -> Geometry {
     let index = |shape: ShapeRef| match shape {
@@ -40,17 +42,23 @@ pub fn prepare(
     for instance in &desc.instances {
         used[index(instance.shape)] = true;
     }
-    let meshes = desc.meshes.par_iter().zip(&used).map(|(mesh, used)| {
-        let mesh = if *used { prepare_mesh(mesh) } else { Mesh::default() };
-        let blas = Blas::build(&mesh.points, &mesh.triangles);
-        (Shape::Mesh(Arc::new(mesh)), Arc::new(blas))
+    let meshes = desc.meshes.par_iter().zip(&used).map(|(desc, used)| {
+        cache.mesh(desc).unwrap_or_else(|| {
+            let mesh = if *used { prepare_mesh(desc) } else { Mesh::default() };
+            let blas = Blas::build(&mesh.points, &mesh.triangles);
+            (Shape::Mesh(Arc::new(mesh)), Arc::new(blas))
+        })
     });
-    let rounds = desc.rounds.par_iter().zip(&used[desc.meshes.len()..]).map(|(rounds, used)| {
-        let rounds = if *used { prepare_rounds(rounds) } else { Rounds::default() };
-        let blas = Blas::rounds(&rounds.balls, rounds.segments.as_deref());
-        (Shape::Rounds(Arc::new(rounds)), Arc::new(blas))
+    let rounds = desc.rounds.par_iter().zip(&used[desc.meshes.len()..]).map(|(desc, used)| {
+        cache.rounds(desc).unwrap_or_else(|| {
+            let rounds = if *used { prepare_rounds(desc) } else { Rounds::default() };
+            let blas = Blas::rounds(&rounds.balls, rounds.segments.as_deref());
+            (Shape::Rounds(Arc::new(rounds)), Arc::new(blas))
+        })
     });
-    let (shapes, blases): (Vec<_>, Vec<_>) = meshes.chain(rounds).unzip();
+    let prepared: Vec<Ready> = meshes.chain(rounds).collect();
+    cache.keep(desc, &used, &prepared);
+    let (shapes, blases): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
     for (i, instance) in desc.instances.iter().enumerate() {

@@ -53,11 +53,13 @@ const PCG_MUL: i32 = 1_664_525;
 const PCG_ADD: i32 = 1_013_904_223;
 
 /// 31 bits as a number from 0 to 1.
+#[inline(always)]
 fn from_31_bits(v: i32) -> f32 {
     (v & 0x7fff_ffff) as f32 * (1.0 / 2_147_483_648.0)
 }
 
 /// Two numbers from 0 to 1 for a cell of the plane.
+#[inline(always)]
 pub fn pcg2(cell: [i32; 2]) -> [f32; 2] {
     let [x, y] = cell.map(|v| v.wrapping_mul(PCG_MUL).wrapping_add(PCG_ADD));
     let x = x.wrapping_add(y.wrapping_mul(PCG_MUL));
@@ -69,6 +71,7 @@ pub fn pcg2(cell: [i32; 2]) -> [f32; 2] {
 }
 
 /// Three numbers from 0 to 1 for a cell of space.
+#[inline(always)]
 pub fn pcg3(cell: [i32; 3]) -> [f32; 3] {
     let stir = |[x, y, z]: [i32; 3]| {
         let x = x.wrapping_add(y.wrapping_mul(z));
@@ -81,6 +84,7 @@ pub fn pcg3(cell: [i32; 3]) -> [f32; 3] {
 }
 
 /// Four numbers from 0 to 1 for a cell of space and `w`.
+#[inline(always)]
 pub fn pcg4(cell: [i32; 4]) -> [f32; 4] {
     let stir = |[x, y, z, w]: [i32; 4]| {
         let x = x.wrapping_add(y.wrapping_mul(w));

@@ -6,11 +6,11 @@ use crate::math::Vec3;
 /// From here on a float has no fraction.
 const WHOLE: f32 = 8_388_608.0;
 
-/// The largest whole number not above `x`.
+/// The largest whole number not above `x`; it keeps the sign of 0.
 pub fn floor(x: f32) -> f32 {
     let whole = x as i32 as f32;
     let down = whole - f32::from(u8::from(whole > x));
-    if x.abs() < WHOLE { down } else { x }
+    if x.abs() < WHOLE { down.copysign(x) } else { x }
 }
 
 /// The whole part of `x`, towards 0.
@@ -73,6 +73,7 @@ mod tests {
             assert_eq!(trunc(x), x.trunc(), "{x}");
         }
         assert!(floor(f32::NAN).is_nan());
+        assert!(floor(-0.0).is_sign_negative() && floor(0.5).is_sign_positive());
         assert_eq!(floor(f32::NEG_INFINITY), f32::NEG_INFINITY);
         assert_eq!([cell(-0.25), cell(7.0), cell(1e10), cell(f32::NAN)], [-1, 7, i32::MIN, i32::MIN]);
     }

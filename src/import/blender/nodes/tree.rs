@@ -93,6 +93,20 @@ impl TreeData {
     }
 }
 
+impl TreeData {
+    /// True where the tree or a group in it asks for tangents of a UV map.
+    pub fn needs_tangents(&self) -> bool {
+        self.nodes.iter().any(|node| {
+            let asks = match node.r#type.as_str() {
+                "ShaderNodeNormalMap" => node.text("space") == "TANGENT",
+                "ShaderNodeTangent" => node.text("direction_type") == "UV_MAP",
+                _ => false,
+            };
+            asks || node.tree.as_ref().is_some_and(|tree| tree.needs_tangents())
+        })
+    }
+}
+
 impl NodeData {
     /// Index of the input of this identifier, or of this name.
     pub fn input(&self, name: &str) -> Option<usize> {

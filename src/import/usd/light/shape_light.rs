@@ -233,8 +233,11 @@ mod tests {
             ..RoundsDesc::default()
         };
         let rod = vec![Strand { end: 3, closed: false }];
-        let scene =
-            SceneDesc { meshes: vec![mesh], rounds: vec![rounds(Vec::new()), rounds(rod)], ..SceneDesc::default() };
+        let scene = SceneDesc {
+            meshes: vec![mesh.into()],
+            rounds: vec![rounds(Vec::new()).into(), rounds(rod).into()],
+            ..SceneDesc::default()
+        };
         let shapes = [ShapeRef::Mesh(0), ShapeRef::Rounds(0), ShapeRef::Rounds(1)];
         let [square, balls, rod] =
             stage.with("/A", |reading, placed| shapes.map(|shape| area(reading, shape, &scene, &placed.world)));

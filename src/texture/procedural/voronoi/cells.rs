@@ -9,8 +9,9 @@ pub struct Cells<const N: usize, const PCG: bool> {
     pub corner: [f32; N],
     /// The place, from that corner.
     pub inside: [f32; N],
+    /// How far points stray from their cell's corner.
+    pub randomness: f32,
     cell: [i32; N],
-    randomness: f32,
 }
 
 impl<const N: usize, const PCG: bool> Cells<N, PCG> {
@@ -22,6 +23,7 @@ impl<const N: usize, const PCG: bool> Cells<N, PCG> {
     }
 
     /// The point of the cell `step` cells away, from this cell's corner.
+    #[inline(always)]
     pub fn point(&self, step: [i32; N]) -> [f32; N] {
         let stray: [f32; N] = if N == 1 || !PCG { jenkins(self.far_corner(step)) } else { pcg(self.far_cell(step)) };
         std::array::from_fn(|axis| step[axis] as f32 + stray[axis] * self.randomness)
@@ -43,16 +45,19 @@ impl<const N: usize, const PCG: bool> Cells<N, PCG> {
         }
     }
 
+    #[inline(always)]
     fn far_corner(&self, step: [i32; N]) -> [f32; N] {
         std::array::from_fn(|axis| self.corner[axis] + step[axis] as f32)
     }
 
+    #[inline(always)]
     fn far_cell(&self, step: [i32; N]) -> [i32; N] {
         std::array::from_fn(|axis| self.cell[axis].wrapping_add(step[axis]))
     }
 }
 
 /// `M` numbers from 0 to 1 for a cell of whole numbers.
+#[inline(always)]
 fn pcg<const N: usize, const M: usize>(cell: [i32; N]) -> [f32; M] {
     let mut all = [0.0; 4];
     match N {
@@ -64,6 +69,7 @@ fn pcg<const N: usize, const M: usize>(cell: [i32; N]) -> [f32; M] {
 }
 
 /// `M` numbers from 0 to 1 for a cell by its corner.
+#[inline(always)]
 fn jenkins<const N: usize, const M: usize>(corner: [f32; N]) -> [f32; M] {
     std::array::from_fn(|i| match (N, i) {
         (_, 0) => unit(corner),
@@ -74,16 +80,19 @@ fn jenkins<const N: usize, const M: usize>(corner: [f32; N]) -> [f32; M] {
     })
 }
 
-/// Steps to all cells up to `reach` away, the first axis fastest.
-pub fn for_each_step<const N: usize>(reach: i32, mut visit: impl FnMut([i32; N])) {
-    let range = |axis| if axis < N { -reach..=reach } else { 0..=0 };
-    for w in range(3) {
-        for z in range(2) {
-            for y in range(1) {
-                for x in range(0) {
-                    visit(std::array::from_fn(|axis| [x, y, z, w][axis]));
-                }
-            }
-        }
+/// Steps to the cells around in four dimensions, the first axis fastest. The first 3 or 9 or 27 serve
+/// fewer dimensions.
+const STEPS: [[i32; 4]; 81] = {
+    let mut steps = [[0; 4]; 81];
+    let mut i = 0;
+    while i < 81 {
+        steps[i] = [i as i32 % 3 - 1, i as i32 / 3 % 3 - 1, i as i32 / 9 % 3 - 1, i as i32 / 27 - 1];
+        i += 1;
     }
+    steps
+};
+
+/// Steps to the cells around and to the own cell, the first axis fastest.
+pub fn steps<const N: usize>() -> impl Iterator<Item = [i32; N]> {
+    STEPS[..3_usize.pow(N as u32)].iter().map(|step| std::array::from_fn(|axis| step[axis]))
 }

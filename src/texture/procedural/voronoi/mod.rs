@@ -6,6 +6,7 @@
 mod cells;
 mod features;
 mod metric;
+mod near;
 mod octaves;
 
 use crate::math::Vec3;
@@ -139,7 +140,7 @@ impl Voronoi {
             lacunarity: sockets.lacunarity,
             normalize: self.normalize,
         };
-        let metric = Metric { kind: self.metric, exponent: sockets.exponent };
+        let metric = Metric::new::<N>(self.metric, sockets.exponent);
         // No point is further than the far corner of half a cell.
         let reach = 0.5 + 0.5 * randomness;
         let farthest = metric.distance([0.0; N], [reach; N]);

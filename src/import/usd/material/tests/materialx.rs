@@ -2,7 +2,7 @@
 
 use super::super::super::images::tests::png;
 use super::*;
-use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, PixelData, TextureTransform, Wrap};
+use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, TextureTransform, Wrap};
 
 #[test]
 fn standard_surface_folds_its_weights() {

@@ -2,7 +2,7 @@
 
 use super::super::super::images::tests::{png, stage};
 use super::*;
-use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, PixelData, TextureTransform, Wrap};
+use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, TextureTransform, Wrap};
 
 const UV: &str = "def Shader \"uv\" { uniform token info:id = \"UsdPrimvarReader_float2\"
     string inputs:varname = \"st\"
