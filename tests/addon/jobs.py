@@ -152,7 +152,7 @@ class _Listener:
         self.document = json.loads(text)
 
     def __getattr__(self, _name):
-        return lambda *_arguments: None
+        return lambda *_arguments, **_named: None
 
 
 def export(name, path, *options):
