@@ -123,7 +123,7 @@ fn what_strands_absorb_goes_by_the_way_inside_for_there_are_no_inner_walls() {
     for strand in [straight(1), straight(7), straight(100), bent.collect::<Vec<[f32; 4]>>()] {
         let mut builder = Builder::default();
         let material = builder.material(tinted.clone());
-        builder.rounds(strands(&[strand.clone()]), material);
+        builder.rounds(strands(std::slice::from_ref(&strand)), material);
         builder.dome(1.0);
         builder.look([0.0; 3], DOWN, 0.01);
         let picture = picture(&builder.desc, 4, &Settings { max_bounces: 60, ..settings("combined", 64) });

@@ -10,7 +10,7 @@ use super::buffer::Buffer;
 use super::build::{self, LeafRule, Primitive};
 use super::node::{BLOCK, Block, Link, Node};
 use super::ray::RaySetup;
-use super::round::{self, Beyond, RoundBlock, RoundRay};
+use super::round::{self, Beyond, RoundBlock, RoundRay, RoundStart};
 use super::simd::Simd;
 use super::triangle::{self, Best};
 use super::walk::{Links, walk};
@@ -27,22 +27,17 @@ const MARGIN: f32 = 4.0 * f32::EPSILON;
 /// The triangles or round cones of one shape in object space, ready to be instanced in a [`super::Bvh`].
 pub struct Blas {
     nodes: Buffer<Node>,
-    items: Items,
+    /// Empty for round cones.
+    blocks: Buffer<Block>,
+    /// `None` for triangles.
+    rounds: Option<Rounds>,
     root: Link,
     bounds: Bounds,
     len: usize,
 }
 
-/// What the leaves hold.
-pub(super) enum Items {
-    /// Triangles.
-    Triangles(Buffer<Block>),
-    /// Round cones.
-    Rounds(Rounds),
-}
-
 /// Round cones, and what continues them.
-pub(super) struct Rounds {
+struct Rounds {
     blocks: Buffer<RoundBlock>,
     /// By segment; empty where every ball stands alone.
     beyond: Buffer<Beyond>,
@@ -68,8 +63,8 @@ impl Blas {
         let blocks = blocks(&wide.items, &primitives, |range| {
             fill_block(range.iter().map(|p| (p.index, corners(points, triangles[p.index as usize]))))
         });
-        let items = Items::Triangles(blocks);
-        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: primitives.len() }
+        let (rounds, len) = (None, primitives.len());
+        Self { nodes: wide.nodes, blocks, rounds, root: wide.root, bounds: wide.bounds, len }
     }
 
     /// Builds the tree over the round cones between `balls`: those of `segments`, which name a ball
@@ -102,8 +97,9 @@ impl Blas {
                 *beyond = [ball(before, first), ball(after, last)];
             },
         );
-        let items = Items::Rounds(Rounds { blocks, beyond });
-        Self { nodes: wide.nodes, items, root: wide.root, bounds: wide.bounds, len: primitives.len() }
+        let (rounds, len) = (Some(Rounds { blocks, beyond }), primitives.len());
+        let blocks = Buffer::zeroed(0);
+        Self { nodes: wide.nodes, blocks, rounds, root: wide.root, bounds: wide.bounds, len }
     }
 
     /// The box of all that can be hit, in object space; empty if there is nothing.
@@ -113,11 +109,8 @@ impl Blas {
 
     /// Memory held, in bytes.
     pub fn bytes(&self) -> usize {
-        let items = match &self.items {
-            Items::Triangles(blocks) => blocks.bytes(),
-            Items::Rounds(Rounds { blocks, beyond }) => blocks.bytes() + beyond.bytes(),
-        };
-        size_of::<Self>() + self.nodes.bytes() + items
+        let rounds = self.rounds.as_ref().map_or(0, |rounds| rounds.blocks.bytes() + rounds.beyond.bytes());
+        size_of::<Self>() + self.nodes.bytes() + self.blocks.bytes() + rounds
     }
 
     /// Number of triangles or round cones that can be hit.
@@ -142,14 +135,10 @@ impl Blas {
             values.iter().for_each(|v| v.to_bits().hash(&mut hasher));
             indices.hash(&mut hasher);
         };
-        match &self.items {
-            Items::Triangles(blocks) => {
-                blocks.iter().for_each(|b| hash(b.vertices.as_flattened().as_flattened(), &b.triangles));
-            }
-            Items::Rounds(rounds) => {
-                rounds.blocks.iter().for_each(|b| hash(b.balls.as_flattened().as_flattened(), &b.segments));
-                rounds.beyond.iter().for_each(|b| hash(b.as_flattened(), &[]));
-            }
+        self.blocks.iter().for_each(|b| hash(b.vertices.as_flattened().as_flattened(), &b.triangles));
+        if let Some(rounds) = &self.rounds {
+            rounds.blocks.iter().for_each(|b| hash(b.balls.as_flattened().as_flattened(), &b.segments));
+            rounds.beyond.iter().for_each(|b| hash(b.as_flattened(), &[]));
         }
         hasher.finish()
     }
@@ -174,25 +163,23 @@ impl Blas {
         boxes
     }
 
-    /// What the leaves hold.
-    #[inline(always)]
-    pub(super) fn items(&self) -> &Items {
-        &self.items
+    /// True for a tree over round cones, on which only the queries for these find something.
+    pub(super) fn is_round(&self) -> bool {
+        self.rounds.is_some()
     }
 
-    /// Updates `best` with the nearest hit of a ray in object space on `blocks`, which are its own.
+    #[inline(always)]
+    fn links(&self) -> Links<Block> {
+        Links { nodes: self.nodes.as_ptr(), items: self.blocks.as_ptr() }
+    }
+
+    /// Updates `best` with the nearest hit of a ray in object space on a triangle.
     ///
     /// # Safety
-    /// The instruction set is available.
+    /// The instruction set is available, and the tree is one over triangles.
     #[inline(always)]
-    pub(super) unsafe fn closest<S: Simd>(
-        &self,
-        blocks: &Buffer<Block>,
-        ray: &RaySetup,
-        instance: u32,
-        best: &mut Best,
-    ) {
-        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
+    pub(super) unsafe fn closest<S: Simd>(&self, ray: &RaySetup, instance: u32, best: &mut Best) {
+        let tree = self.links();
         let leaf = |best: &mut Best, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
@@ -205,13 +192,13 @@ impl Blas {
         unsafe { walk::<S, _, _>(&tree, self.root, ray, best, |best| best.t, leaf) };
     }
 
-    /// True where a ray in object space hits any of `blocks`, which are its own, at `0 <= t < t_max`.
+    /// True where a ray in object space hits a triangle at `0 <= t < t_max`.
     ///
     /// # Safety
-    /// The instruction set is available.
+    /// As for [`Blas::closest`].
     #[inline(always)]
-    pub(super) unsafe fn any<S: Simd>(&self, blocks: &Buffer<Block>, ray: &RaySetup, t_max: f32) -> bool {
-        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
+    pub(super) unsafe fn any<S: Simd>(&self, ray: &RaySetup, t_max: f32) -> bool {
+        let tree = self.links();
         let mut found = false;
         let leaf = |found: &mut bool, link: Link| {
             let (first, count) = link.items();
@@ -229,47 +216,43 @@ impl Blas {
         found
     }
 
-    /// As [`Blas::closest`] for round cones; rounding may have moved the ray's origin by `o_err`.
+    /// Updates `best` with the nearest hit of a ray in object space on a round cone; there is none in a tree
+    /// over triangles.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub(super) unsafe fn closest_round<S: Simd>(
-        &self,
-        rounds: &Rounds,
-        ray: &RaySetup,
-        o_err: f32,
-        instance: u32,
-        best: &mut Best,
-    ) {
-        let tree = Links { nodes: self.nodes.as_ptr(), items: rounds.blocks.as_ptr() };
-        let round_ray = RoundRay::new(ray, o_err);
+    pub(super) unsafe fn closest_round<S: Simd>(&self, ray: &RoundStart, instance: u32, best: &mut Best) {
+        let Some(Rounds { blocks, beyond }) = &self.rounds else { return };
+        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
+        let (setup, ray) = (RaySetup::new(ray.o, ray.d), RoundRay::new(ray));
         let leaf = |best: &mut Best, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
                 // SAFETY: as above.
-                unsafe { round::closest::<S::F4>(&*tree.items.add(i), &rounds.beyond, &round_ray, instance, best) };
+                unsafe { round::closest::<S::F4>(&*tree.items.add(i), beyond, &ray, instance, best) };
             }
             ControlFlow::Continue(())
         };
         // SAFETY: as above.
-        unsafe { walk::<S, _, _>(&tree, self.root, ray, best, |best| best.t, leaf) };
+        unsafe { walk::<S, _, _>(&tree, self.root, &setup, best, |best| best.t, leaf) };
     }
 
-    /// As [`Blas::any`] for round cones.
+    /// True where a ray in object space hits a round cone at `0 <= t < t_max`.
     ///
     /// # Safety
-    /// The instruction set is available.
+    /// As for [`Blas::closest_round`].
     #[inline(always)]
-    pub(super) unsafe fn any_round<S: Simd>(&self, rounds: &Rounds, ray: &RaySetup, o_err: f32, t_max: f32) -> bool {
-        let tree = Links { nodes: self.nodes.as_ptr(), items: rounds.blocks.as_ptr() };
-        let round_ray = RoundRay::new(ray, o_err);
+    pub(super) unsafe fn any_round<S: Simd>(&self, ray: &RoundStart, t_max: f32) -> bool {
+        let Some(Rounds { blocks, beyond }) = &self.rounds else { return false };
+        let tree = Links { nodes: self.nodes.as_ptr(), items: blocks.as_ptr() };
+        let (setup, ray) = (RaySetup::new(ray.o, ray.d), RoundRay::new(ray));
         let mut found = false;
         let leaf = |found: &mut bool, link: Link| {
             let (first, count) = link.items();
             for i in first..first + count {
                 // SAFETY: as above.
-                if unsafe { round::any::<S::F4>(&*tree.items.add(i), &rounds.beyond, &round_ray, t_max) } {
+                if unsafe { round::any::<S::F4>(&*tree.items.add(i), beyond, &ray, t_max) } {
                     *found = true;
                     return ControlFlow::Break(());
                 }
@@ -277,7 +260,7 @@ impl Blas {
             ControlFlow::Continue(())
         };
         // SAFETY: as above.
-        unsafe { walk::<S, _, _>(&tree, self.root, ray, &mut found, |_| t_max, leaf) };
+        unsafe { walk::<S, _, _>(&tree, self.root, &setup, &mut found, |_| t_max, leaf) };
         found
     }
 }

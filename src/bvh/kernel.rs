@@ -2,11 +2,10 @@
 //! in the hot loop.
 
 use super::Hit;
-use super::blas::{Blas, Rounds};
 use super::isa::Isa;
-use super::ray::{RaySetup, is_plain, rescaled};
+use super::ray::{is_plain, rescaled};
 use super::simd;
-use super::top::Tree;
+use super::top::{Placed, Tree};
 use super::triangle::Best;
 use crate::math::Ray;
 
@@ -17,25 +16,27 @@ pub(super) struct Kernel {
     any: unsafe fn(&Tree, &Ray, u64) -> bool,
 }
 
-/// The queries of round cones for one instruction set. They are called, so that registers and code of
-/// the loop over triangles are as if there were none.
+/// The queries of an instance of round cones for one instruction set. They are called, and with nothing
+/// that has to be made for them, so that code and registers for triangles are as if there were none.
 pub(super) struct RoundCode {
-    pub closest: unsafe fn(&Blas, &Rounds, &RaySetup, f32, u32, &mut Best),
-    pub any: unsafe fn(&Blas, &Rounds, &RaySetup, f32, f32) -> bool,
+    pub closest: unsafe fn(&Placed, &Ray, Best) -> Best,
+    pub any: unsafe fn(&Placed, &Ray) -> bool,
 }
 
 /// Compiles all queries for an instruction set.
 macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
+        #[inline(never)]
         $(#[target_feature(enable = $features)])?
-        unsafe fn closest_round(blas: &Blas, of: &Rounds, ray: &RaySetup, o_err: f32, instance: u32, best: &mut Best) {
+        unsafe fn closest_round(placed: &Placed, ray: &Ray, best: Best) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { blas.closest_round::<$simd>(of, ray, o_err, instance, best) }
+            unsafe { placed.closest_round::<$simd>(ray, best) }
         }
+        #[inline(never)]
         $(#[target_feature(enable = $features)])?
-        unsafe fn any_round(blas: &Blas, of: &Rounds, ray: &RaySetup, o_err: f32, t_max: f32) -> bool {
+        unsafe fn any_round(placed: &Placed, ray: &Ray) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { blas.any_round::<$simd>(of, ray, o_err, t_max) }
+            unsafe { placed.any_round::<$simd>(ray) }
         }
         static ROUND: RoundCode = RoundCode { closest: closest_round, any: any_round };
         $(#[target_feature(enable = $features)])?

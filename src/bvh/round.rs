@@ -11,7 +11,6 @@ use bytemuck::Zeroable;
 
 use super::blas::LARGEST;
 use super::node::BLOCK;
-use super::ray::RaySetup;
 use super::simd::Lanes;
 use super::triangle::Best;
 use crate::math::{Ball, Bounds, DVec3, RoundCone, Vec3, orthonormal_pair};
@@ -72,6 +71,14 @@ pub(super) fn bounds(ends: [Ball; 2]) -> Option<Bounds> {
     Some(Bounds { min: min - margin, max: max + margin })
 }
 
+/// A ray in the space of the balls, as it is handed over.
+pub(super) struct RoundStart {
+    pub o: [f32; 3],
+    pub d: [f32; 3],
+    /// How far rounding may have moved the origin.
+    pub o_err: f32,
+}
+
 /// What the tests of round cones keep of a ray.
 pub(super) struct RoundRay {
     o: [f32; 3],
@@ -81,11 +88,11 @@ pub(super) struct RoundRay {
 }
 
 impl RoundRay {
-    /// The ray of `setup`, whose origin rounding may have moved by `o_err`.
-    pub fn new(setup: &RaySetup, o_err: f32) -> Self {
-        let line = Line::new(setup.o, setup.d, o_err);
+    /// The constants of `ray`.
+    pub fn new(ray: &RoundStart) -> Self {
+        let line = Line::new(ray.o, ray.d, ray.o_err);
         let (s, t) = orthonormal_pair(line.d.normalize_or(DVec3::Z));
-        Self { o: setup.o, across: [s, t].map(|v| v.as_vec3().to_array()), line }
+        Self { o: ray.o, across: [s, t].map(|v| v.as_vec3().to_array()), line }
     }
 }
 

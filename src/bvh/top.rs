@@ -3,13 +3,14 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::blas::{Blas, Items};
+use super::blas::Blas;
 use super::buffer::Buffer;
 use super::build::{self, LeafRule, Primitive};
 use super::isa::Isa;
 use super::kernel::{Kernel, RoundCode};
 use super::node::{Link, Node};
 use super::ray::RaySetup;
+use super::round::RoundStart;
 use super::simd::Simd;
 use super::triangle::Best;
 use super::walk::{Links, walk};
@@ -37,13 +38,14 @@ pub(super) struct Tree {
 
 /// An instance as traversal needs it.
 #[repr(C, align(64))]
-struct Placed {
+pub(super) struct Placed {
     /// Columns of the linear part, then the translation.
     render_to_object: [[f32; 3]; 4],
     blas: *const Blas,
     mask: u64,
-    /// Index in the caller's list, [`Placed::IDENTITY`] added where the transform does nothing.
-    id_and_flag: u32,
+    /// Index in the caller's list, [`Placed::IDENTITY`] added where the transform does nothing and
+    /// [`Placed::ROUND`] for a shape of round cones.
+    id_and_flags: u32,
 }
 
 // SAFETY: `blas` points into an `Arc` that the tree holds, and is only read.
@@ -100,28 +102,35 @@ impl Bvh {
 
 impl Placed {
     const IDENTITY: u32 = 1 << 31;
+    const ROUND: u32 = 1 << 30;
 
     fn new(id: usize, instance: &Instance, blases: &[Arc<Blas>]) -> Option<Self> {
         let blas = blases.get(instance.blas as usize)?;
         let render_to_object = inverse(&instance.object_to_render)?;
         let identity = instance.object_to_render == Affine3A::IDENTITY;
-        assert!(id < Self::IDENTITY as usize, "too many instances");
+        assert!(id < Self::ROUND as usize, "too many instances");
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         Some(Self {
             render_to_object,
             blas: Arc::as_ptr(blas),
             mask: instance.mask,
-            id_and_flag: id as u32 | if identity { Self::IDENTITY } else { 0 },
+            id_and_flags: id as u32 | flag(identity, Self::IDENTITY) | flag(blas.is_round(), Self::ROUND),
         })
     }
 
     #[inline(always)]
     fn id(&self) -> u32 {
-        self.id_and_flag & !Self::IDENTITY
+        self.id_and_flags & !(Self::IDENTITY | Self::ROUND)
     }
 
     #[inline(always)]
     fn is_identity(&self) -> bool {
-        self.id_and_flag & Self::IDENTITY != 0
+        self.id_and_flags & Self::IDENTITY != 0
+    }
+
+    #[inline(always)]
+    fn is_round(&self) -> bool {
+        self.id_and_flags & Self::ROUND != 0
     }
 
     /// The ray in object space; its direction keeps the length that the transform gives it, so that
@@ -134,12 +143,34 @@ impl Placed {
         RaySetup::new(o, [linear(&ray.d, 0), linear(&ray.d, 1), linear(&ray.d, 2)])
     }
 
-    /// How far from a surface, in object space, the origin of a ray in render space may be found though
-    /// it starts there: its own rounding and that of the way to object space.
-    fn origin_error(&self, o: &[f32; 3]) -> f32 {
+    /// `ray` in object space, for round cones: also how far from a surface it may be found there though it
+    /// starts on it, by the rounding of its own origin and of its way here.
+    fn round_start(&self, ray: &Ray) -> RoundStart {
+        let RaySetup { o, d, .. } = self.ray(&RaySetup::new(ray.o.to_array(), ray.d.to_array()));
         let [x, y, z, t] = &self.render_to_object;
-        let axis = |i: usize| (x[i] * o[0]).abs() + (y[i] * o[1]).abs() + (z[i] * o[2]).abs() + t[i].abs();
-        gamma(8) * axis(0).max(axis(1)).max(axis(2))
+        let axis = |i: usize| (x[i] * ray.o.x).abs() + (y[i] * ray.o.y).abs() + (z[i] * ray.o.z).abs() + t[i].abs();
+        RoundStart { o, d, o_err: gamma(8) * axis(0).max(axis(1)).max(axis(2)) }
+    }
+
+    /// `best`, or the nearest hit of a ray in render space on the round cones of the instance.
+    ///
+    /// # Safety
+    /// [`Placed::is_round`], and the instruction set is available.
+    #[inline(always)]
+    pub unsafe fn closest_round<S: Simd>(&self, ray: &Ray, mut best: Best) -> Best {
+        // SAFETY: the shape lives as long as the tree; the instruction set by contract.
+        unsafe { (*self.blas).closest_round::<S>(&self.round_start(ray), self.id(), &mut best) };
+        best
+    }
+
+    /// True where a ray in render space hits a round cone of the instance.
+    ///
+    /// # Safety
+    /// As for [`Placed::closest_round`].
+    #[inline(always)]
+    pub unsafe fn any_round<S: Simd>(&self, ray: &Ray) -> bool {
+        // SAFETY: as above.
+        unsafe { (*self.blas).any_round::<S>(&self.round_start(ray), ray.t_max) }
     }
 }
 
@@ -205,6 +236,11 @@ impl Tree {
                 if placed.mask & mask == 0 {
                     continue;
                 }
+                if placed.is_round() {
+                    // SAFETY: as below.
+                    *best = unsafe { (round.closest)(placed, ray, *best) };
+                    continue;
+                }
                 // SAFETY: the mesh lives as long as the tree; the instruction set by contract.
                 unsafe {
                     let moved;
@@ -214,13 +250,7 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    let blas = &*placed.blas;
-                    match blas.items() {
-                        Items::Triangles(blocks) => blas.closest::<S>(blocks, local, placed.id(), best),
-                        Items::Rounds(rounds) => {
-                            (round.closest)(blas, rounds, local, placed.origin_error(&setup.o), placed.id(), best);
-                        }
-                    }
+                    (*placed.blas).closest::<S>(local, placed.id(), best);
                 }
             }
             ControlFlow::Continue(())
@@ -247,6 +277,14 @@ impl Tree {
                 if placed.mask & mask == 0 {
                     continue;
                 }
+                if placed.is_round() {
+                    // SAFETY: as above.
+                    if unsafe { (round.any)(placed, ray) } {
+                        *found = true;
+                        return ControlFlow::Break(());
+                    }
+                    continue;
+                }
                 // SAFETY: as above.
                 *found = unsafe {
                     let moved;
@@ -256,11 +294,7 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    let blas = &*placed.blas;
-                    match blas.items() {
-                        Items::Triangles(blocks) => blas.any::<S>(blocks, local, t_max),
-                        Items::Rounds(rounds) => (round.any)(blas, rounds, local, placed.origin_error(&setup.o), t_max),
-                    }
+                    (*placed.blas).any::<S>(local, t_max)
                 };
                 if *found {
                     return ControlFlow::Break(());

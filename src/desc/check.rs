@@ -84,7 +84,7 @@ fn check_rounds(rounds: &RoundsDesc) -> Result<()> {
     rule(rounds.colors.as_ref().is_none_or(|values| values.len() == points), "wrong count of colors")?;
     let ends = || rounds.strands.iter().map(|strand| strand.end);
     let grow = std::iter::once(0).chain(ends()).zip(ends()).all(|(before, end)| before < end);
-    let fit = ends().last().is_none_or(|end| end as usize == points);
+    let fit = ends().next_back().is_none_or(|end| end as usize == points);
     rule(grow && fit, "strands and points differ in number")?;
     let slots = if rounds.strands.is_empty() { points } else { rounds.strands.len() };
     rule(rounds.material_slots.as_ref().is_none_or(|s| s.len() == slots), "wrong count of slots")

@@ -190,7 +190,7 @@ fn diamond(x: f64, y: f64) -> f64 {
 fn undo_diamond(angle: f64) -> [f64; 2] {
     let y = if angle.abs() <= 1.0 { angle } else { (2.0 - angle.abs()) * angle.signum() };
     let x = 1.0 - angle.abs();
-    let length = x.hypot(y);
+    let length = (x * x + y * y).sqrt();
     [x / length, y / length]
 }
 

@@ -134,7 +134,7 @@ impl Spot<'_> {
                 let corners = mesh.corners(triangle).map(|p| p.to_array());
                 DVec3::from(self.blend(corners, self.beside(at).uv)) + mesh.center
             }
-            None => self.from_world(Quantity::Point, Space::Object, self.world_position(at)),
+            None => self.out_of_world(Quantity::Point, Space::Object, self.world_position(at)),
         }
     }
 
@@ -225,7 +225,7 @@ impl Spot<'_> {
         }
     }
 
-    fn from_world(&self, quantity: Quantity, to: Space, v: DVec3) -> DVec3 {
+    fn out_of_world(&self, quantity: Quantity, to: Space, v: DVec3) -> DVec3 {
         match (to, quantity) {
             (Space::World, _) => v,
             (Space::Object, Quantity::Normal) => (self.to_render().transpose() * v).normalize_or_zero(),
@@ -267,7 +267,7 @@ impl Hit for Spot<'_> {
             Leaf::ObjectPosition => vector(self.object_position(at)),
             Leaf::ObjectNormal => vector(self.smooth_normal(at).normalize_or_zero() * self.side()),
             Leaf::Generated => vector(self.generated(at)),
-            Leaf::CameraPosition => vector(self.from_world(Quantity::Point, Space::Camera, self.world_position(at))),
+            Leaf::CameraPosition => vector(self.out_of_world(Quantity::Point, Space::Camera, self.world_position(at))),
             Leaf::Window => {
                 let [x, y] = self.around.camera.window((it.p.as_dvec3() + self.beside(at).away).as_vec3());
                 [f64::from(x), f64::from(y), 0.0, 0.0]
@@ -314,7 +314,7 @@ impl Hit for Spot<'_> {
 
     fn transform(&self, quantity: Quantity, from: Space, to: Space, [x, y, z, w]: Value) -> Value {
         let world = self.to_world(quantity, from, DVec3::new(x, y, z));
-        let there = self.from_world(quantity, to, world);
+        let there = self.out_of_world(quantity, to, world);
         [there.x, there.y, there.z, w]
     }
 

@@ -83,13 +83,12 @@ impl Shape {
             Self::Rounds(rounds) => {
                 let local = rounds.point(primitive, at);
                 let (p, p_err) = place_point(transform, local.p, local.p_err);
-                let axis = rounds.cone(primitive).0.axis.as_vec3();
                 SurfaceGeometry {
                     p,
                     p_err,
                     ng: carried(local.ng).as_dvec3().try_normalize().map(|n| n.as_vec3()),
                     ns: Some(carried(local.ns)),
-                    size: transform.transform_vector3(axis).length_squared(),
+                    size: transform.transform_vector3(local.axis).length_squared(),
                 }
             }
         }

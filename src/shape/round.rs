@@ -31,6 +31,8 @@ pub struct RoundSurface {
     pub ng: Vec3,
     /// Unit; it turns evenly along the strand, so that joints do not show.
     pub ns: Vec3,
+    /// From the first centre of the segment to the second.
+    pub axis: Vec3,
 }
 
 /// How a strand runs at one place.
@@ -101,7 +103,8 @@ impl Rounds {
         let point = cone.point(uv);
         let p = (origin + point.p).as_vec3();
         let ns = self.smooth_normal(segment, uv[0], &point).unwrap_or(point.normal);
-        RoundSurface { p, p_err: p.abs() * gamma(2), ng: point.normal.as_vec3(), ns: ns.as_vec3() }
+        let (ng, ns, axis) = (point.normal.as_vec3(), ns.as_vec3(), cone.axis.as_vec3());
+        RoundSurface { p, p_err: p.abs() * gamma(2), ng, ns, axis }
     }
 
     /// `None` where the true normal is to be used: on balls and on caps that no smooth joint covers.

@@ -48,6 +48,7 @@ impl Builder {
     }
 
     /// Strands or balls, where their points say.
+    #[allow(dead_code)] // Not every test that includes this file has strands.
     pub fn rounds(&mut self, rounds: RoundsDesc, material: u32) {
         self.desc.rounds.push(rounds.into());
         self.place(ShapeRef::Rounds(self.desc.rounds.len() as u32 - 1), material, DAffine3::IDENTITY);

@@ -1,14 +1,14 @@
 //! Models that are drawn by their bounds, their origin or cards (`model:drawMode`).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
-use penumbra::desc::{Attribute, MeshDesc};
+use penumbra::desc::{Attribute, MeshDesc, ShapeRef};
 use penumbra::import::ImportOptions;
 
 use super::{Loaded, load, try_load};
 
 fn mesh<'a>(loaded: &'a Loaded, path: &str) -> &'a MeshDesc {
-    &loaded.scene.meshes[loaded.one(path).mesh as usize]
+    loaded.scene.mesh(loaded.one(path)).unwrap()
 }
 
 /// Smallest and largest corner, rounded to a hundredth.
@@ -51,10 +51,10 @@ fn models_are_replaced_where_their_mode_applies() {
     let instanced: Vec<f64> = loaded.all("/World/Many/Asset").iter().map(|i| i.transform.translation.y).collect();
     assert_eq!(instanced, [10.0, 20.0]);
     // What looks the same is one mesh.
-    let meshes: BTreeSet<u32> =
-        ["/World/Inherited", "/World/InstanceA", "/World/InstanceB"].map(|path| loaded.one(path).mesh).into();
+    let meshes: HashSet<ShapeRef> =
+        ["/World/Inherited", "/World/InstanceA", "/World/InstanceB"].map(|path| loaded.one(path).shape).into();
     assert_eq!(meshes.len(), 1);
-    assert_eq!(loaded.all("/World/Many/Asset")[0].mesh, loaded.one("/World/Inherited").mesh);
+    assert_eq!(loaded.all("/World/Many/Asset")[0].shape, loaded.one("/World/Inherited").shape);
 }
 
 /// Bars of 1/200 of the diagonal.

@@ -1,17 +1,17 @@
 //! Colours of instances: primvars of point instancers, and what instances inherit.
 
-use penumbra::desc::Attribute;
+use penumbra::desc::{Attribute, InstanceDesc};
 use penumbra::import::ImportOptions;
 
 use super::{Loaded, load};
 
 /// Colours of all instances at `path`: that of the instance, or of the mesh with a note.
 fn colors(loaded: &Loaded, path: &str) -> Vec<(&'static str, [f32; 4])> {
-    let of = |mesh: u32| match loaded.scene.meshes[mesh as usize].colors.as_ref() {
+    let of = |instance: &InstanceDesc| match loaded.scene.mesh(instance).and_then(|mesh| mesh.colors.as_ref()) {
         Some(Attribute::Point(values) | Attribute::Corner(values)) => Some(values[0]),
         None => None,
     };
-    let each = loaded.all(path).into_iter().map(|instance| match (instance.color, of(instance.mesh)) {
+    let each = loaded.all(path).into_iter().map(|instance| match (instance.color, of(instance)) {
         (Some(color), None) => ("instance", color),
         (None, Some(color)) => ("mesh", color),
         (None, None) => ("none", [0.0; 4]),
@@ -47,7 +47,7 @@ fn native_instances_share_their_mesh_whatever_color_they_inherit() {
         let [green, above] = ["Green", "Above"].map(|instance| format!("/World/{instance}/{mesh}"));
         assert_eq!(colors(&loaded, &green), [("instance", [0.0, 1.0, 0.0, 1.0])]);
         assert_eq!(colors(&loaded, &above), [("instance", [0.1, 0.1, 0.1, 1.0])]);
-        assert_eq!(loaded.one(&green).mesh, loaded.one(&above).mesh);
+        assert_eq!(loaded.one(&green).shape, loaded.one(&above).shape);
     }
     assert_eq!(colors(&loaded, "/World/Green/Own"), [("mesh", [0.0, 0.0, 1.0, 1.0])]);
 }

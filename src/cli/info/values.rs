@@ -15,8 +15,8 @@ use serde_json::{Value, json};
 /// All of `scene`.
 pub fn describe(scene: &SceneDesc) -> Value {
     json!({
-        "meshes": scene.meshes.iter().map(mesh).collect::<Vec<_>>(),
-        "rounds": scene.rounds.iter().map(rounds).collect::<Vec<_>>(),
+        "meshes": scene.meshes.iter().map(|desc| mesh(desc)).collect::<Vec<_>>(),
+        "rounds": scene.rounds.iter().map(|desc| rounds(desc)).collect::<Vec<_>>(),
         "instances": scene.instances.iter().map(|i| instance(i, scene)).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| light(l, scene)).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(camera).collect::<Vec<_>>(),

@@ -108,7 +108,7 @@ pub fn mesh(
 ) -> Result<NamedMesh> {
     let broken = |what: String| Error::invalid(place, format!("the mesh \"{name}\" {what}"));
     let (points, corners) = (arrays.positions.len() / 3, arrays.corner_verts.len());
-    if arrays.positions.len() % 3 != 0 || arrays.triangles.len() % 3 != 0 {
+    if !arrays.positions.len().is_multiple_of(3) || !arrays.triangles.len().is_multiple_of(3) {
         return Err(broken("has arrays of odd lengths".into()));
     }
     let in_range = |index: i32, count: usize| usize::try_from(index).is_ok_and(|index| index < count);
@@ -286,7 +286,7 @@ mod tests {
         let Attribute::Corner(uvs) = &mesh.mesh.uvs[0] else { panic!("as many points as corners") };
         assert_eq!(uvs[5], [0.0, 0.75]);
         assert_eq!(mesh.uv_names, ["UVMap".into()]);
-        assert_eq!(mesh.mesh.normals.unwrap().len(), 6);
+        assert_eq!(mesh.mesh.normals.as_ref().unwrap().len(), 6);
     }
 
     #[test]
@@ -308,7 +308,7 @@ mod tests {
         positions[4] = f32::NAN;
         let (mesh, said) = built(&MeshArrays { positions: &positions, material_index: &[7], ..quad() }, &[]);
         let mesh = mesh.unwrap().mesh;
-        assert_eq!((mesh.triangles, mesh.material_slots), (vec![[0, 2, 3]], Some(vec![7])));
+        assert_eq!((&mesh.triangles, &mesh.material_slots), (&vec![[0, 2, 3]], &Some(vec![7])));
         assert_eq!(said, ["the mesh \"quad\" has 1 vertices that are not finite; 1 triangles are left out"]);
     }
 }

@@ -205,6 +205,7 @@ mod tests {
         near(lens.aperture_radius, 0.0125);
         near(lens.focus_distance, 4.0);
         assert_eq!(camera.shutter, [-0.25, 0.25]);
+        assert!(!said.contains("depth of field"), "{said}");
     }
 
     #[test]

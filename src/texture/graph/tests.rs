@@ -200,7 +200,7 @@ fn random_op(kind: u8, pick: u8, x: f64, args: [ValueId; 3], graph: &mut Graph) 
                 Leaf::Backfacing,
                 Leaf::MaterialIndex,
                 Leaf::Path(PathInfo::Length),
-                Leaf::Attribute { name: if pick % 2 == 0 { "a" } else { "b" }.into(), fallback: [x; 4] },
+                Leaf::Attribute { name: if pick.is_multiple_of(2) { "a" } else { "b" }.into(), fallback: [x; 4] },
             ];
             graph.leaf(leaves[usize::from(pick) % leaves.len()].clone())
         }

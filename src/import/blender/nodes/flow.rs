@@ -127,7 +127,7 @@ impl<'a, 'i> Flow<'a, 'i> {
                     }
                 }
                 "NodeReroute" => Some((from, 0)),
-                "ShaderNodeGroup" => self.into_group(from, output),
+                "ShaderNodeGroup" => self.group_output(from, output),
                 "NodeGroupInput" => self.scopes[at.scope].group.and_then(|group| {
                     let id = &node.outputs.get(output)?.id;
                     Some((group, group.node.inputs.iter().position(|socket| socket.id == *id)?))
@@ -144,7 +144,7 @@ impl<'a, 'i> Flow<'a, 'i> {
     }
 
     /// The input of a group's output node that its output `output` shows.
-    fn into_group(&mut self, group: At<'a>, output: usize) -> Option<(At<'a>, usize)> {
+    fn group_output(&mut self, group: At<'a>, output: usize) -> Option<(At<'a>, usize)> {
         let tree = group.node.tree.as_deref()?;
         let id = &group.node.outputs.get(output)?.id;
         let scope = match self.entered.get(&(group.scope, group.index)) {
