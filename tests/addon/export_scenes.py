@@ -56,3 +56,29 @@ def moving():
         for holder, path in ((lamp.data, "energy"), (lamp.data, "spread"), (lamp, "location")):
             holder.keyframe_insert(path)
     scene.frame_set(1)
+
+
+def instances():
+    """Geometry nodes that instance what is no object's, and two instances of a collection that holds a lamp."""
+    scenes.room()
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.1)
+    ball = bpy.context.object
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=2)
+    grid = bpy.context.object
+    tree = bpy.data.node_groups.new("Instances", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    new, link = tree.nodes.new, tree.links.new
+    source, target = new("NodeGroupInput"), new("NodeGroupOutput")
+    instance, shape = new("GeometryNodeInstanceOnPoints"), new("GeometryNodeObjectInfo")
+    shape.inputs["Object"].default_value = ball
+    link(source.outputs[0], instance.inputs["Points"])
+    link(shape.outputs["Geometry"], instance.inputs["Instance"])
+    link(instance.outputs[0], target.inputs[0])
+    grid.modifiers.new("Instances", "NODES").node_group = tree
+    collection = bpy.data.collections.new("Lamps")
+    light = bpy.data.lights.new("Inside", "AREA")
+    light.spread = 1.0
+    collection.objects.link(bpy.data.objects.new("Inside", light))
+    for x in (1.0, 2.0):
+        scenes.add(f"Lamps{x}", None, location=(x, 0.0, 3.0), instance_type="COLLECTION", instance_collection=collection)

@@ -114,6 +114,19 @@ def test_what_moves_is_there_at_each_frame(blender, tmp_path, ending):
     assert left == []
 
 
+@pytest.mark.parametrize("options", [(), ("instancing",)])
+@pytest.mark.parametrize("ending", ["usdc", "glb"])
+def test_lamps_in_instances_shine_where_they_stand(blender, tmp_path, ending, options):
+    path = tmp_path / f"instances.{ending}"
+    _, output = blender.run("export", "instances", path, *options)
+    values, _ = read(path)
+    assert sorted(light["matrix"][12] for light in values["lights"]) == [1.0, 2.0]
+    assert all(close(light["kind"]["spread"], 1.0) for light in values["lights"])
+    # Blender's USD exporter leaves these instances empty, which is told.
+    assert ("Realize Instances" in output) == (ending == "usdc")
+    assert len(values["instances"]) == (3 if ending == "usdc" else 3 + 16)
+
+
 def test_nothing_is_left_behind_where_it_fails(blender, tmp_path):
     answer, output = blender.run("export_fails", tmp_path)
     assert answer["refused"] == ["file.obj", "missing/file.usdc", "folder.usdc"]

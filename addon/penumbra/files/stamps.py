@@ -34,6 +34,9 @@ class Stamps(Exporter):
         """Stamps by the names of their objects, the world's under None."""
         objects = [obj for obj in bpy.data.objects if obj.type in {"LIGHT", "CAMERA"} and obj.data is not None]
         stamps = {obj.name_full: self._stamp(self._of_object, obj) for obj in objects}
+        linked = sorted(obj.name for obj in self._scene.objects if _is_linked(obj))
+        if linked:
+            self.warnings.append(f"light linking is not exported: {', '.join(linked)}")
         if self._scene.world is not None:
             stamps[None] = self._stamp(self._of_world, self._scene.world)
         moving = {obj.name_full: (self._of_object, obj) for obj in objects if _is_animated(obj)}
@@ -142,6 +145,11 @@ class Stamps(Exporter):
         except ValueError:
             # Another drive of Windows.
             return path
+
+
+def _is_linked(obj):
+    linking = getattr(obj, "light_linking", None)
+    return linking is not None and (linking.receiver_collection or linking.blocker_collection) is not None
 
 
 def _fps(scene):

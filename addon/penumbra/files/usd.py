@@ -40,10 +40,27 @@ def write(context, path, selected, animation, instancing):
     writes_meters = "meters_per_unit" in exporter.get_rna_type().properties
     unit = 1.0 if writes_meters else context.scene.unit_settings.scale_length
     stamps = Stamps(context, path, unit, animation)
+    stamps.warnings += _lost(context, instancing)
     with _stamped(context, stamps):
         if "FINISHED" not in exporter(**options):
             raise RuntimeError(f"Blender's USD exporter did not write {path}")
     return stamps.warnings
+
+
+def _lost(context, instancing):
+    """What Blender's exporter does to instances of geometry nodes, which nothing here can mend."""
+    by_nodes, own = set(), set()
+    for instance in context.evaluated_depsgraph_get().object_instances:
+        parent = instance.parent if instance.is_instance else None
+        if parent is not None and any(modifier.type == "NODES" for modifier in parent.modifiers):
+            is_own = instance.instance_object is None or instance.instance_object.name == parent.name
+            (own if is_own else by_nodes).add(parent.name)
+    if own:
+        yield (f"{', '.join(sorted(own))}: instances of geometry that is no object's are empty in USD files of Blender; "
+               "use Realize Instances or the As Instance of Object Info, or export glTF")
+    if instancing and by_nodes and bpy.app.version >= (4, 3):
+        yield (f"{', '.join(sorted(by_nodes))}: with Instancing, Blender writes instances of geometry nodes twice; "
+               "export without it")
 
 
 @contextmanager
