@@ -6,6 +6,7 @@ JOB is a function of jobs.py. The extension is expected in BLENDER_USER_RESOURCE
 """
 
 import json
+import os
 import sys
 import traceback
 
@@ -31,6 +32,10 @@ def main():
         json.dump(answer, file)
     # Blender 4.x does not survive an engine that is registered at exit.
     addon_utils.disable(EXTENSION)
+    if bpy.app.version < (4, 3):
+        # It crashes at exit once it has exported glTF, with or without the extension.
+        sys.stdout.flush()
+        os._exit(0)
 
 
 main()

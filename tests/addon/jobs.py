@@ -1,5 +1,6 @@
 """What the tests let Blender do; each job returns plain data."""
 
+import json
 import os
 import time
 
@@ -128,6 +129,63 @@ def side_by_side(name, folder, spp=256, size=64):
         paths.append(os.path.join(folder, f"{name}-{engine.lower()}.exr"))
         _render(paths[-1])
     return paths
+
+
+def _left():
+    """What an export left of itself in the scene."""
+    marks = [f"{obj.name}: {key}" for obj in bpy.data.objects for key in obj.keys() if "penumbra" in key]
+    marks += [data.name for group in (bpy.data.objects, bpy.data.images) for data in group if "penumbra" in data.name]
+    return marks + [light.name for light in bpy.data.lights if not light.users]
+
+
+def _scene_of(name):
+    import export_scenes
+    import scenes
+
+    getattr(export_scenes if hasattr(export_scenes, name) else scenes, name)()
+
+
+class _Listener:
+    """Stands in for the engine: keeps the document that a render would get."""
+
+    def set_document(self, text):
+        self.document = json.loads(text)
+
+    def __getattr__(self, _name):
+        return lambda *_arguments, **_named: None
+
+
+def export(name, path, *options):
+    """The scene `name` exported; what F12 would render, and what is left behind."""
+    from bl_ext.user_default.penumbra.export import Exporter
+
+    _scene_of(name)
+    render, listener = bpy.context.scene.render, _Listener()
+    Exporter(listener).export(bpy.context.evaluated_depsgraph_get(), [render.resolution_x, render.resolution_y])
+    bpy.ops.penumbra.export(filepath=path, **{option: True for option in options})
+    return [listener.document, _left()]
+
+
+def export_fails(folder):
+    """Exports that are refused."""
+    _scene_of("point_soft")
+    refused = []
+    os.mkdir(os.path.join(folder, "folder.usdc"))
+    for name in ("file.obj", "missing/file.usdc", "folder.usdc"):
+        try:
+            bpy.ops.penumbra.export(filepath=os.path.join(folder, name))
+        except RuntimeError as error:
+            print(error)
+            refused.append(name)
+    return {"refused": refused, "left": _left()}
+
+
+def export_command(path):
+    """What `blender --command penumbra_export` does."""
+    from bl_ext.user_default.penumbra.files import operator
+
+    _scene_of("point_soft")
+    return operator.command([path])
 
 
 def cancel(folder):

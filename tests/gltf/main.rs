@@ -14,6 +14,7 @@ mod materials;
 mod mutation;
 #[path = "../support/rng.rs"]
 mod rng;
+mod stamps;
 
 use penumbra::desc::{Attribute, SceneDesc, check};
 use penumbra::error::{Error, Place, Warnings};

@@ -148,14 +148,14 @@ fn no_well_formed_damage_panics() {
         let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
         Glb { json: serde_json::from_slice(&bytes[20..20 + length]).unwrap(), bin: bytes[28 + length..].to_vec() }
     })
-    .chain([lights])
+    .chain([lights, super::stamps::rich()])
     .collect();
     let mut rng = Rng(number("PENUMBRA_SEED", 1) | 1 << 40);
     let mut accepted = 0_u64;
     let cases = number("PENUMBRA_MUTATIONS", 4000);
     for case in 0..cases {
         // The richest file gets most of the turns.
-        let seed = &seeds[[0, 0, 0, 1, 2, 3][rng.below(6)]];
+        let seed = &seeds[[0, 0, 0, 1, 2, 3, 4, 4][rng.below(8)]];
         let mut glb = Glb { json: seed.json.clone(), bin: seed.bin.clone() };
         for _ in 0..1 + rng.below(3) {
             mutate(&mut glb.json, &mut rng);

@@ -29,6 +29,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
     "KHR_xmp",
     "KHR_xmp_json_ld",
+    super::stamp::NAME,
 ];
 
 /// Extensions that are read where the build has their decoder.

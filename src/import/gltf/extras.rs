@@ -94,12 +94,22 @@ impl Penumbra {
     pub fn gives_light(&self, node: &Node) -> bool {
         let punctual = node.extensions.light.as_ref().and_then(|light| light.light);
         let measured = node.extensions.ies.as_ref().and_then(|light| light.light);
-        self.names_light || punctual.or(measured).is_some()
+        let stamped = node.extensions.stamp.as_ref().is_some_and(|stamp| stamp["light"].is_object());
+        self.names_light || stamped || punctual.or(measured).is_some()
     }
 
     /// Rules of the node's light, but for those that name other nodes.
     pub fn links(&self) -> LightLinks {
-        LightLinks { group: self.group.clone(), cast_shadow: self.cast_shadow.unwrap_or(true), ..LightLinks::default() }
+        self.over(LightLinks::default())
+    }
+
+    /// `links` with what the node says about them.
+    pub fn over(&self, links: LightLinks) -> LightLinks {
+        LightLinks {
+            group: self.group.clone().or(links.group),
+            cast_shadow: self.cast_shadow.unwrap_or(links.cast_shadow),
+            ..links
+        }
     }
 
     /// True where it says something that needs a mesh or a light to be said of.

@@ -69,7 +69,11 @@ object!(IesProfile { name: Option<String>, uri: Option<String>, buffer_view: Opt
 object!(VariantList { variants: Vec<Variant> });
 object!(Variant { name: String });
 
-object!(Scene { name: Option<String>, nodes: Vec<usize> });
+object!(Scene { name: Option<String>, nodes: Vec<usize>, extensions: SceneExtensions });
+object!(SceneExtensions {
+    #[serde(rename = "PENUMBRA_blender")]
+    stamp: Option<serde_json::Value>,
+});
 
 object!(Node {
     name: Option<String>,
@@ -94,6 +98,8 @@ object!(NodeExtensions {
     instancing: Option<Instancing>,
     #[serde(rename = "KHR_node_visibility")]
     visibility: Option<NodeVisibility>,
+    #[serde(rename = "PENUMBRA_blender")]
+    stamp: Option<serde_json::Value>,
 });
 object!(NodeLight { light: Option<usize> });
 object!(NodeIes { light: Option<usize>, multiplier: f64 = 1.0, color: [f64; 3] = [1.0; 3] });

@@ -54,6 +54,16 @@ pub(super) fn kind(
     }
 }
 
+/// The cone that Blender's exporter made of a spot: its outer angle, and the inner one by what the blend leaves.
+pub(super) fn cone_of_blender(cone: ConeDesc) -> ConeDesc {
+    match cone {
+        ConeDesc::Ramp { inner, outer } if outer > 0.0 => {
+            ConeDesc::Blend { angle: outer, blend: (1.0 - inner / outer).clamp(0.0, 1.0) }
+        }
+        other => other,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,10 +2,11 @@
 //! order, so that a plainer light can stand in for programs that know no better one.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
+use super::super::blender::Stamp;
 use super::super::{LightUnits, decode_ies};
 use super::accessor::Reader;
 use super::document::label;
@@ -14,8 +15,8 @@ use super::json::{IesProfile, Image, NodeIes};
 use super::lamp::{IesUse, Lamp, Source};
 use super::light::{self, LUMENS_PER_WATT, tinted};
 use super::node::PlacedNode;
-use super::texture;
 use super::uri::{self, Target};
+use super::{stamp, texture};
 use crate::desc::{
     ColorSpace, DecayDesc, IesDesc, IesRef, ImageDesc, LightDesc, LightKind, SceneDesc, ShapingDesc, Visibility,
 };
@@ -32,6 +33,8 @@ pub(super) struct Lights<'a> {
     units: LightUnits,
     images: BTreeMap<Source, Result<u32, String>>,
     profiles: BTreeMap<Source, Result<u32, String>>,
+    /// Kinds of lamps that Blender's exporter wrote without help.
+    plain: BTreeSet<&'static str>,
 }
 
 /// What a light is and how it is shaped.
@@ -39,12 +42,28 @@ type Emission = (LightKind, ShapingDesc, DecayDesc);
 
 impl<'a> Lights<'a> {
     pub fn new(reader: Reader<'a>, base: Option<&'a Path>, place: &'a Place, units: LightUnits) -> Self {
-        Self { reader, base, place, units, images: BTreeMap::new(), profiles: BTreeMap::new() }
+        Self { reader, base, place, units, images: BTreeMap::new(), profiles: BTreeMap::new(), plain: BTreeSet::new() }
     }
 
     /// Adds the light of a node, if there is one.
-    pub fn add(&mut self, placed: &PlacedNode, penumbra: &Penumbra, scene: &mut SceneDesc, warnings: &mut Warnings) {
+    pub fn add(
+        &mut self,
+        placed: &PlacedNode,
+        penumbra: &Penumbra,
+        stamp: Option<&Stamp>,
+        scene: &mut SceneDesc,
+        warnings: &mut Warnings,
+    ) {
         let node = &self.reader.root.nodes[placed.node];
+        let stamp = stamp.filter(|_| penumbra.light.is_none());
+        if let Some(light) = stamp.and_then(|stamp| stamp::light(stamp, placed, scene, warnings)) {
+            scene.lights.extend(light.map(|light| LightDesc {
+                visibility: penumbra.visible(light.visibility),
+                links: penumbra.over(light.links.clone()),
+                ..light
+            }));
+            return;
+        }
         let emission = if let Some(lamp) = &penumbra.light {
             Some(self.lamp(lamp, placed, scene, warnings))
         } else if let Some(measured) = &node.extensions.ies {
@@ -65,7 +84,7 @@ impl<'a> Lights<'a> {
     }
 
     /// KHR_lights_punctual.
-    fn punctual(&self, placed: &PlacedNode, warnings: &mut Warnings) -> Option<Emission> {
+    fn punctual(&mut self, placed: &PlacedNode, warnings: &mut Warnings) -> Option<Emission> {
         let root = self.reader.root;
         let node = &root.nodes[placed.node];
         let index = node.extensions.light.as_ref()?.light?;
@@ -75,7 +94,35 @@ impl<'a> Lights<'a> {
             return None;
         };
         let kind = light::kind(json, &node.extras, self.units);
-        kind.map_err(|what| warnings.push(&placed.place, format!("{what}; the light is left out"))).ok()
+        let (kind, mut shaping, decay) =
+            kind.map_err(|what| warnings.push(&placed.place, format!("{what}; the light is left out"))).ok()?;
+        if self.is_blenders() {
+            shaping.cone = shaping.cone.map(light::cone_of_blender);
+            self.plain.insert(match kind {
+                LightKind::Distant { .. } => "the angle of suns",
+                _ => "the radius and soft falloff of lamps",
+            });
+        }
+        Some((kind, shaping, decay))
+    }
+
+    /// True for files of Blender's exporter.
+    fn is_blenders(&self) -> bool {
+        self.reader.root.asset.generator.contains("Blender I/O")
+    }
+
+    /// Tells, once, what Blender's exporter lost of the lamps that nothing was stamped on.
+    pub fn tell_of_lost(&self, warnings: &mut Warnings) {
+        if self.plain.is_empty() {
+            return;
+        }
+        let lost: Vec<&str> = self.plain.iter().copied().collect();
+        let what = format!(
+            "was exported by Blender alone, which loses {}, the shadow switch, area lamps and the world. \
+             File > Export > Penumbra keeps them",
+            lost.join(", ")
+        );
+        warnings.push(self.place, what);
     }
 
     /// EXT_lights_ies: a point whose intensity is that of the file, in candela.

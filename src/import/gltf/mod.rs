@@ -31,6 +31,7 @@ mod meshopt;
 mod node;
 mod sampler;
 mod scene;
+mod stamp;
 mod texture;
 mod topology;
 mod uri;

@@ -7,6 +7,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::super::ImportOptions;
+use super::super::blender::Stamp;
 use super::accessor::Reader;
 use super::deform::SkinPose;
 use super::document::label;
@@ -17,7 +18,7 @@ use super::links::Links;
 use super::mesh::{self, Job};
 use super::node::{self, Hierarchy, PlacedNode};
 use super::texture::{Lookup, TextureTable};
-use super::{camera, instancing, material};
+use super::{camera, instancing, material, stamp};
 use crate::desc::{CameraDesc, InstanceDesc, MaterialDesc, MeshDesc, ObjectInfo, SceneDesc, ShapeRef, Visibility};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::{DAffine3, DMat4, DVec3};
@@ -92,13 +93,16 @@ impl Builder<'_> {
         for (i, node) in hierarchy.nodes.iter().enumerate() {
             let penumbra = Penumbra::read(&root.nodes[node.node].extras, &node.place, warnings);
             let (first_light, first_instance) = (scene.lights.len(), scene.instances.len());
-            self.camera(node, &mut scene, warnings);
-            lights.add(node, &penumbra, &mut scene, warnings);
+            let json = root.nodes[node.node].extensions.stamp.as_ref();
+            let stamp = stamp::read(json, self.base_dir, self.options, &node.place, warnings);
+            self.camera(node, stamp.as_ref(), &mut scene, warnings);
+            lights.add(node, &penumbra, stamp.as_ref(), &mut scene, warnings);
             if let Some(state) = meshes.by_node[i] {
                 self.instances(node, &penumbra, &meshes.parts[state], &mut scene, warnings)?;
             }
             let (lights, instances) = (first_light..scene.lights.len(), first_instance..scene.instances.len());
-            if lights.is_empty() && penumbra.gives_light(&root.nodes[node.node]) {
+            let is_dark = stamp.is_some_and(|stamp| stamp.light.is_some());
+            if lights.is_empty() && !is_dark && penumbra.gives_light(&root.nodes[node.node]) {
                 scene.lights_left_out += 1;
             } else if penumbra.has_rules() && lights.is_empty() && instances.is_empty() {
                 warnings.push(&node.place, "extras.penumbra: the node has neither a mesh nor a light to apply to");
@@ -106,6 +110,12 @@ impl Builder<'_> {
             links.add(instances, lights, penumbra);
         }
         links.resolve(&hierarchy.nodes, &mut scene, warnings);
+        let json = root.scenes.get(root.scene.unwrap_or(0)).and_then(|scene| scene.extensions.stamp.as_ref());
+        if let Some(stamp) = stamp::read(json, self.base_dir, self.options, self.place, warnings) {
+            let world = stamp::world(&stamp, &mut scene, warnings);
+            scene.lights.extend(world);
+        }
+        lights.tell_of_lost(warnings);
         scene.meshes = meshes.meshes.into_iter().map(Into::into).collect();
         Ok(scene)
     }
@@ -330,8 +340,15 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn camera(&self, placed: &PlacedNode, scene: &mut SceneDesc, warnings: &mut Warnings) {
+    fn camera(&self, placed: &PlacedNode, stamp: Option<&Stamp>, scene: &mut SceneDesc, warnings: &mut Warnings) {
         let root = self.reader.root;
+        if let Some((camera, render)) = stamp.and_then(|stamp| stamp::camera(stamp, placed, warnings)) {
+            scene.cameras.push(camera);
+            if let Some(render) = render {
+                scene.render = render;
+            }
+            return;
+        }
         let Some(index) = root.nodes[placed.node].camera else { return };
         let Some(json) = root.cameras.get(index) else {
             warnings.push(&placed.place, format!("names camera {index} of {}; it is left out", root.cameras.len()));

@@ -3,9 +3,10 @@
 use openusd::gf::Vec4f;
 
 use super::stage::Reading;
+use super::stamp;
 use super::values::Values;
 use super::walk::Placed;
-use crate::desc::{CameraDesc, LensDesc, ProjectionDesc};
+use crate::desc::{CameraDesc, LensDesc, ProjectionDesc, RenderDesc};
 
 /// Apertures and focal length are in tenths of a unit of the stage.
 const TENTH: f64 = 0.1;
@@ -55,6 +56,41 @@ pub(super) fn read(reading: &Reading<'_>, placed: &Placed) -> Option<CameraDesc>
         exposure: exposure(&values),
         motion: placed.motion.clone(),
     })
+}
+
+/// The camera at `placed` as *Export for Penumbra* stamped it, and what the scene's settings say of its
+/// picture. UsdGeom's camera counts where there is one, so that edits of it count.
+pub(super) fn stamped(reading: &Reading<'_>, placed: &Placed) -> Option<(CameraDesc, Option<RenderDesc>)> {
+    let values = Values { reading, prim: &placed.prim, path: &placed.path };
+    let stamp = stamp::read(&values, stamp::CAMERA)?;
+    let data = stamp.camera.as_ref()?;
+    let is_prim = &*placed.kind == "Camera";
+    // The prim that holds UsdGeom's is the one that is asked.
+    if !is_prim && data.r#type == "PERSP" {
+        return None;
+    }
+    let own = stamp.camera(data, &placed.world, &reading.place, &mut reading.warnings.borrow_mut());
+    let own = own.map_err(|what| values.warn(format!("{} is left out: {what}", stamp::CAMERA))).ok()?;
+    let plain = if is_prim { read(reading, placed) } else { None };
+    let place = reading.place_of(&placed.path);
+    let camera = match plain {
+        Some(plain) => CameraDesc {
+            exposure: plain.exposure * own.exposure,
+            lens: plain.lens.map(|lens| match own.lens {
+                Some(LensDesc { blades, rotation, ratio, .. }) => LensDesc { blades, rotation, ratio, ..lens },
+                None => lens,
+            }),
+            ..plain
+        },
+        None => CameraDesc {
+            name: placed.path.name().unwrap_or_default().into(),
+            place: place.clone(),
+            motion: placed.motion.clone(),
+            ..own
+        },
+    };
+    let render = stamp.render().map(|render| RenderDesc { camera: place.node.clone(), ..render });
+    Some((camera, render))
 }
 
 /// Near and far plane in metres.

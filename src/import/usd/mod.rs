@@ -36,6 +36,7 @@ mod schemas;
 mod shape;
 mod shapes;
 mod stage;
+mod stamp;
 mod udim;
 mod units;
 mod values;

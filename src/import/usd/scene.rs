@@ -12,8 +12,8 @@ use super::light::{Profiles, ShapeLight};
 use super::material::Materials;
 use super::stage::Reading;
 use super::walk::{Placed, Walk};
-use super::{camera, crew, instances, light, render, shapes, units, variants};
-use crate::desc::SceneDesc;
+use super::{camera, crew, instances, light, render, shapes, stamp, units, variants};
+use crate::desc::{RenderDesc, SceneDesc};
 use crate::error::Result;
 
 /// The whole stage as a scene.
@@ -47,7 +47,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
 
 /// True for what is read on its own, not as a shape.
 fn aside(kind: &str) -> bool {
-    kind == "Camera" || light::is_light(kind)
+    matches!(kind, "Camera" | stamp::KIND) || light::is_light(kind)
 }
 
 /// Everything that is shown; read anew where a camera's shutter is open for longer than an instant, which
@@ -100,24 +100,62 @@ fn lights_and_cameras(
 ) -> HashMap<Path, ShapeLight> {
     let mut profiles = Profiles::default();
     let mut geometry = HashMap::new();
-    for found in haul.found.iter().filter(|found| aside(&found.look.kind)) {
-        let Ok(prim) = reading.stage.prim(&found.look.prim) else { continue };
-        let placed = Placed {
-            prim,
-            path: found.path.clone(),
-            kind: Rc::from(&*found.look.kind),
-            world: found.pose.world,
-            motion: moving(&haul.times, &found.pose),
-            visible: found.look.visible,
-        };
+    let mut lost = BTreeSet::new();
+    let placed: Vec<Placed> = haul.found.iter().filter_map(|found| placed(reading, haul, found)).collect();
+    let worlds = light::worlds(reading, &placed, images);
+    for placed in &placed {
         match &*placed.kind {
-            "Camera" => scene.cameras.extend(camera::read(reading, &placed)),
-            "GeometryLight" => geometry.extend(light::geometry_light(reading, &placed)),
-            _ => scene.lights.extend(light::read(reading, &placed, images, &mut profiles)),
+            "Camera" | stamp::KIND => add_camera(reading, placed, scene),
+            "GeometryLight" => geometry.extend(light::geometry_light(reading, placed)),
+            _ if worlds.replace(&placed.path) => {}
+            _ => {
+                lost.extend(light::lost(reading, placed));
+                scene.lights.extend(light::read(reading, placed, images, &mut profiles));
+            }
         }
+    }
+    scene.lights.extend(worlds.domes);
+    if !lost.is_empty() {
+        let lost: Vec<&str> = lost.into_iter().collect();
+        let what = format!(
+            "was exported by Blender alone, which loses what lamps have of these: {}; they are as Blender has them \
+             from the start. File > Export > Penumbra keeps them",
+            lost.join(", ")
+        );
+        reading.warnings.borrow_mut().push(&reading.place, what);
     }
     scene.ies = profiles.list;
     geometry
+}
+
+/// What is read on its own of `found`.
+fn placed(reading: &Reading<'_>, haul: &Haul, found: &Found) -> Option<Placed> {
+    if !aside(&found.look.kind) {
+        return None;
+    }
+    Some(Placed {
+        prim: reading.stage.prim(&found.look.prim).ok()?,
+        path: found.path.clone(),
+        kind: Rc::from(&*found.look.kind),
+        world: found.pose.world,
+        motion: moving(&haul.times, &found.pose),
+        visible: found.look.visible,
+    })
+}
+
+/// Adds the camera at `placed`, where there is one, and what Blender's scene says of its picture where the
+/// stage itself says nothing.
+fn add_camera(reading: &Reading<'_>, placed: &Placed, scene: &mut SceneDesc) {
+    let Some((camera, render)) = camera::stamped(reading, placed) else {
+        if &*placed.kind == "Camera" {
+            scene.cameras.extend(camera::read(reading, placed));
+        }
+        return;
+    };
+    scene.cameras.push(camera);
+    if let Some(render) = render.filter(|_| scene.render == RenderDesc::default()) {
+        scene.render = render;
+    }
 }
 
 /// True where something stands elsewhere at another time of the shutter.

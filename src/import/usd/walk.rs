@@ -17,7 +17,7 @@ use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{draw_mode, instancer, prototypes, schemas};
+use super::{draw_mode, instancer, prototypes, schemas, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -196,6 +196,10 @@ impl<'r, 'a> Walk<'r, 'a> {
         let mut inner = context.enter(&mut self.clock, prim, &kind, &names);
         if kind.role == Role::Group {
             schemas::tell_of_shapeless(reading, prim, &kind, &names);
+            if names.iter().any(|name| stamp::shows(name)) {
+                let kind = Kind { name: stamp::KIND.into(), ..kind.clone() };
+                self.leaf(prim, &kind, context, &inner, &names, shown);
+            }
         }
         if draw_mode::replace(self, prim, &kind, &names, [context, &inner], shown) {
             return None;

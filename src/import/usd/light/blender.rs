@@ -18,7 +18,9 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::XformQuery;
 
 use super::super::stage::Reading;
+use super::super::stamp;
 use super::super::values::Values;
+use super::super::walk::Placed;
 use crate::math::{DMat3, DVec3};
 
 /// A custom property of the lamp, or of its object.
@@ -32,6 +34,38 @@ pub(super) fn property(values: &Values<'_>, name: &str) -> Option<f64> {
         Values { prim: &prim, ..*values }.loose(&name)
     };
     values.loose(&name).or_else(of_object)
+}
+
+/// What Blender's own exporter lost of the light at `placed`, as far as it matters and nothing says it.
+pub(in super::super) fn lost(reading: &Reading<'_>, placed: &Placed) -> Vec<&'static str> {
+    let values = Values { reading, prim: &placed.prim, path: &placed.path };
+    let stamped = || {
+        reading
+            .names(&placed.prim.parent().unwrap_or_else(|| placed.prim.clone()))
+            .iter()
+            .chain(reading.names(&placed.prim).iter())
+            .any(|name| name.as_str() == stamp::LIGHT)
+    };
+    if !reading.blender || !placed.visible || stamped() {
+        return Vec::new();
+    }
+    let unsaid = |name: &'static str, what: &'static str| property(&values, name).is_none().then_some(what);
+    let mut lost = Vec::new();
+    match &*placed.kind {
+        "DomeLight" => lost.push("the sky and the strength of the world"),
+        "SphereLight" => lost.extend(unsaid("use_soft_falloff", "soft falloff")),
+        "RectLight" => lost.extend(unsaid("spread", "spread")),
+        "DiskLight" => {
+            lost.extend(unsaid("spread", "spread"));
+            lost.push("the shape of an ellipse");
+        }
+        _ => {}
+    }
+    if &*placed.kind != "DomeLight" {
+        lost.extend(unsaid("use_shadow", "the shadow switch"));
+        lost.push("nodes");
+    }
+    lost
 }
 
 /// The colour temperature in kelvin, where it is in use.

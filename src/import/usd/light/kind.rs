@@ -77,8 +77,9 @@ impl Light<'_> {
 
     /// Metres of the unit in which areas are measured by `normalize`: that of the stage.
     fn unit(&self) -> f64 {
-        // Blender computes before its exporter scales.
-        if self.values.reading.blender { 1.0 } else { self.values.reading.meters }
+        let reading = self.values.reading;
+        // Blender computes in its own unit, before its exporter scales.
+        if reading.blender { blender::meters_per_unit(reading, &self.path) } else { reading.meters }
     }
 
     /// What the emission is multiplied by, given the area in square metres.
@@ -105,7 +106,8 @@ fn sphere(light: &Light<'_>, emission: [f64; 3]) -> LightKind {
         };
         return LightKind::Point { intensity: times(emission, factor) };
     }
-    let facing = blender::property(&light.values, "use_soft_falloff").is_some_and(|soft| soft != 0.0);
+    // Lamps of Blender have it from the start.
+    let facing = blender::property(&light.values, "use_soft_falloff").map_or(reading.blender, |soft| soft != 0.0);
     let radiance = times(emission, light.per_area(4.0 * PI * radius * radius));
     LightKind::Sphere { radius, radiance, facing }
 }

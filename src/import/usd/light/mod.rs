@@ -13,10 +13,13 @@ mod links;
 mod rules;
 mod shape_light;
 mod shaping;
+mod stamped;
 
+pub(super) use blender::lost;
 pub(super) use ies::Profiles;
 pub(super) use links::link;
 pub(super) use shape_light::{ShapeLight, area, geometry_light};
+pub(super) use stamped::worlds;
 
 use super::images::Images;
 use super::stage::Reading;
@@ -68,6 +71,15 @@ pub(super) fn read(
         return None;
     }
     let light = Light { values: Values { reading, prim: &placed.prim, path: &placed.path }, placed };
+    let told_of_motion = || {
+        if !placed.motion.is_empty() {
+            light.values.warn("it moves while the shutter is open: rendered where it stands at the frame");
+        }
+    };
+    if let Some(stamped) = stamped::lamp(&light, images, profiles) {
+        told_of_motion();
+        return stamped;
+    }
     let (kind, transform) = match &*placed.kind {
         "DomeLight" | "DomeLight_1" => dome::read(&light, images),
         "PortalLight" => {
@@ -84,9 +96,7 @@ pub(super) fn read(
     };
     let (shaping, factor) = shaping::read(&light, &kind, profiles);
     let name = placed.path.name().unwrap_or_default();
-    if !placed.motion.is_empty() {
-        light.values.warn("it moves while the shutter is open: rendered where it stands at the frame");
-    }
+    told_of_motion();
     Some(LightDesc {
         shaping,
         visibility: rules::visibility(&light.values, matches!(kind, LightKind::Dome { .. })),
