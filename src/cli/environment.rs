@@ -40,7 +40,7 @@ pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
     }
     let image: ImageDesc = load_image(path, color_space(path)).context("can't use --environment")?;
     scene.images.push(image);
-    scene.lights.retain(|light| !matches!(light.kind, LightKind::Dome { .. }));
+    scene.lights.retain(|light| !light.kind.is_dome());
     let transform = DAffine3::from_mat3(DMat3::from_rotation_y(rotation.to_radians()));
     let kind = LightKind::Dome { radiance: [strength; 3], image: Some(scene.images.len() as u32 - 1) };
     scene.lights.push(LightDesc::new("environment", Place::file(path.clone()), transform, kind));

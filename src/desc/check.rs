@@ -1,7 +1,7 @@
 //! Holds a [`SceneDesc`] to its own rules, so that what follows need not.
 
-use super::graph::Op;
-use super::{RoundsDesc, SceneDesc, ShapeRef};
+use super::graph::{Graph, Op, ValueId};
+use super::{LightKind, RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result};
 
 /// Checks every index and length of `scene`.
@@ -39,14 +39,7 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         for texture in material.textures() {
             index(texture.texture, scene.textures.len(), &material.place, "texture")?;
         }
-        for value in material.graph_values() {
-            index(value.index() as u32, material.graph.ops().len(), &material.place, "value of the graph")?;
-        }
-        for op in material.graph.ops() {
-            if let Op::Image { texture, .. } = op {
-                index(*texture, scene.textures.len(), &material.place, "texture of the graph")?;
-            }
-        }
+        check_graph(scene, &material.graph, material.graph_values(), &material.place)?;
     }
     for image in &scene.images {
         let texels = image.width as usize * image.height as usize;
@@ -57,6 +50,11 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
     for light in &scene.lights {
         if let Some(image) = light.kind.image() {
             index(image, scene.images.len(), &light.place, "image")?;
+        }
+        if let LightKind::ShadedDome { shader } = light.kind {
+            index(shader, scene.dome_shaders.len(), &light.place, "dome shader")?;
+            let shader = &scene.dome_shaders[shader as usize];
+            check_graph(scene, &shader.graph, [shader.radiance], &light.place)?;
         }
         if let Some(ies) = light.shaping.ies {
             index(ies.profile, scene.ies.len(), &light.place, "IES profile")?;
@@ -71,6 +69,23 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
     for (links, place) in of_lamps.chain(scene.instances.iter().map(|i| (&i.links, &i.place))) {
         for &i in links.receivers.iter().chain(&links.blockers).flat_map(|set| &set.instances) {
             index(i, scene.instances.len(), place, "linked object")?;
+        }
+    }
+    Ok(())
+}
+
+fn check_graph(
+    scene: &SceneDesc,
+    graph: &Graph,
+    values: impl IntoIterator<Item = ValueId>,
+    place: &Place,
+) -> Result<()> {
+    for value in values {
+        index(value.index() as u32, graph.ops().len(), place, "value of the graph")?;
+    }
+    for op in graph.ops() {
+        if let Op::Image { texture, .. } = op {
+            index(*texture, scene.textures.len(), place, "texture of the graph")?;
         }
     }
     Ok(())

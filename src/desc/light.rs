@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Visibility;
+use super::graph::{Atmosphere, Graph, ValueId};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -101,6 +102,36 @@ pub enum LightKind {
         /// Index into `SceneDesc::images`; `None` for a constant dome.
         image: Option<u32>,
     },
+    /// What surrounds everything, by a graph. Its transform says nothing of what it emits, but where the
+    /// poles of the map are that light sampling goes by: along local y.
+    ShadedDome {
+        /// Index into `SceneDesc::dome_shaders`.
+        shader: u32,
+    },
+}
+
+/// The radiance of a dome by the direction that it comes from.
+///
+/// In its graph every point is that unit direction in world space ([`super::graph::Leaf::Position`], those of
+/// an object and generated ones), as if the dome were the unit sphere around the world's origin, seen from
+/// there: normals and the direction to whoever looks are its negative. Nothing is known of the ray's path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DomeShader {
+    /// How it is made.
+    pub graph: Graph,
+    /// The radiance, that of suns left out; negative places count as 0.
+    pub radiance: ValueId,
+    /// Suns of the skies in it.
+    pub suns: Vec<DomeSun>,
+}
+
+/// The disk of a sun in a sky of a graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DomeSun {
+    /// The sky without the disk.
+    pub sky: ValueId,
+    /// The same with it; directions are the world's.
+    pub atmosphere: Atmosphere,
 }
 
 /// How the emission of a local light varies with the direction in which light leaves it. The axis is
@@ -263,9 +294,14 @@ impl LightKind {
     pub fn is_in_background(&self) -> bool {
         match *self {
             Self::Distant { angle, .. } => angle > 0.0,
-            Self::Dome { .. } => true,
+            Self::Dome { .. } | Self::ShadedDome { .. } => true,
             _ => false,
         }
+    }
+
+    /// True for what surrounds everything.
+    pub fn is_dome(&self) -> bool {
+        matches!(self, Self::Dome { .. } | Self::ShadedDome { .. })
     }
 
     /// The image that it is textured with.
@@ -276,7 +312,7 @@ impl LightKind {
         }
     }
 
-    /// Radiance, intensity or irradiance, whichever it is given in.
+    /// Radiance, intensity or irradiance, whichever it is given in; white where a graph says it.
     pub fn color(&self) -> [f64; 3] {
         match *self {
             Self::Point { intensity } => intensity,
@@ -286,6 +322,7 @@ impl LightKind {
             | Self::Disk { radiance, .. }
             | Self::Cylinder { radiance, .. }
             | Self::Dome { radiance, .. } => radiance,
+            Self::ShadedDome { .. } => [1.0; 3],
         }
     }
 }

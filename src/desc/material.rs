@@ -236,6 +236,8 @@ pub struct MaterialDesc {
     pub occlusion: Option<ScalarInput>,
     /// No scattering: the base colour is what is seen (KHR_materials_unlit).
     pub unlit: bool,
+    /// The camera sees a hole in the picture instead, black and of alpha 0; all other rays see the surface.
+    pub holdout: bool,
 }
 
 impl Default for MaterialDesc {
@@ -268,6 +270,7 @@ impl Default for MaterialDesc {
             normal: None,
             occlusion: None,
             unlit: false,
+            holdout: false,
         }
     }
 }

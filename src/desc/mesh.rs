@@ -116,6 +116,9 @@ pub struct InstanceDesc {
     pub visibility: Visibility,
     /// Rules of the light that it emits, where it emits any.
     pub links: LightLinks,
+    /// True where the camera sees a hole in the picture instead: black, of alpha 0. All other rays see it as
+    /// it is.
+    pub holdout: bool,
 }
 
 /// What graphs ask an object for.

@@ -21,7 +21,8 @@ pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use image::{ColorSpace, ImageDesc, PixelData};
 pub use light::{
-    ConeDesc, DecayDesc, DecayLaw, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc,
+    ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
+    ShapingDesc,
 };
 pub use material::{
     AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
@@ -57,6 +58,8 @@ pub struct SceneDesc {
     pub images: Vec<ImageDesc>,
     /// Lights that are not emissive meshes, domes included.
     pub lights: Vec<LightDesc>,
+    /// What domes emit that is more than an image.
+    pub dome_shaders: Vec<DomeShader>,
     /// How many more lights the file has that could not be read; the door has told why.
     pub lights_left_out: usize,
     /// Measured distributions that lights use.

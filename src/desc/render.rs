@@ -16,6 +16,9 @@ pub struct RenderDesc {
     pub crop: Option<[u32; 4]>,
     /// The background is not seen by the camera: alpha is 0 there, and the environment pass is as ever.
     pub film_transparent: bool,
+    /// Opacity from which on a surface is what normal, UV, depth, position and index passes show; thinner ones
+    /// are looked through. 0 for the first surface, whatever it is.
+    pub pass_alpha_threshold: f64,
     /// Names of passes (`PASSES`), in the order of the file.
     pub passes: Vec<Arc<str>>,
     /// Where the file wants its picture.
@@ -30,6 +33,7 @@ impl Default for RenderDesc {
             pixel_aspect: 1.0,
             crop: None,
             film_transparent: false,
+            pass_alpha_threshold: 0.5,
             passes: Vec::new(),
             product: None,
         }

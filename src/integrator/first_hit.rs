@@ -17,32 +17,47 @@ pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
     }
 }
 
-/// The first surface along `ray` whose opacity is at least a half, which is where Cycles draws the
-/// line for these passes.
+/// What the passes of one ray show along `ray`: the first surface that is opaque enough, else the last one, as
+/// in Cycles. A hole in the picture ends it.
 fn first_opaque(scene: &Scene, mut ray: Ray) -> Option<Interaction> {
+    let mut last = None;
     for _ in 0..MAX_TRANSPARENT {
-        let hit = scene.closest_hit(&ray, mask::CAMERA)?;
+        let Some(hit) = scene.closest_hit(&ray, mask::CAMERA) else { break };
         let it = scene.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
-        if scene.opacity(&it) >= 0.5 {
+        if scene.is_holdout(&it) {
+            break;
+        }
+        if scene.opacity(&it) >= scene.pass_alpha_threshold {
             return Some(it);
         }
         ray = it.continued(&ray, hit.t);
+        last = Some(it);
     }
-    None
+    last
 }
 
-/// Fills the data that passes average over samples, as far as they are asked for.
+/// Normal and texture coordinates of what a ray from the camera has met with an opacity of `opacity`, whether
+/// it then passes it or not; false where it is too thin to be shown.
+pub fn describe_shape(scene: &Scene, it: &Interaction, opacity: f32, sample: &mut PixelSample) -> bool {
+    if opacity < scene.pass_alpha_threshold || scene.is_holdout(it) {
+        return false;
+    }
+    sample.normal = scene.shading_frame(it).n;
+    let shape = scene.shape(scene.instance(it.instance));
+    if let Some(uv) = shape.uv(0, it.primitive, it.at) {
+        // v grows upwards in Blender's passes and downwards in glTF.
+        sample.uv = [uv.x, 1.0 - uv.y, 1.0];
+    }
+    true
+}
+
+/// Fills the other data that passes average over samples, those of the surface that has stopped the ray, as far
+/// as they are asked for.
 pub fn describe(scene: &Scene, it: &Interaction, frame: &Frame, sample: &mut PixelSample) {
     if scene.effects.geometry {
         let view = scene.camera.view();
-        sample.normal = frame.n;
         sample.denoising_normal = Vec3::new(frame.n.dot(view.right), frame.n.dot(view.up), frame.n.dot(view.forward));
         sample.denoising_depth = view.depth(it.p);
-        let shape = scene.shape(scene.instance(it.instance));
-        if let Some(uv) = shape.uv(0, it.primitive, it.at) {
-            // v grows upwards in Blender's passes and downwards in glTF.
-            sample.uv = [uv.x, 1.0 - uv.y, 1.0];
-        }
     }
     if scene.effects.cryptomatte {
         let object = &scene.ids.objects[it.instance as usize];

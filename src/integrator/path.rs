@@ -5,7 +5,7 @@
 
 use super::ao;
 use super::direct::{Shading, leaks};
-use super::first_hit::describe;
+use super::first_hit::{describe, describe_shape};
 use super::media::Media;
 use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
@@ -96,17 +96,26 @@ pub fn trace(
     let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
     let mut sample = PixelSample::with_groups(scene.passes.groups().len());
     let mut path = Path::from_camera(ray, cone);
+    let mut described = !scene.effects.geometry;
     loop {
         let surface = next_surface(scene, sampler, &mut path, |path, met| match met {
             Met::Stretch(segment) if scene.effects.lamps => add_lamps(scene, path, segment, &mut sample),
             Met::Stretch(_) => {}
-            Met::Surface(it, opacity) => add_emission(scene, path, it, opacity, &mut sample),
+            Met::Surface(it, opacity) => {
+                if !described && path.scatterings == 0 {
+                    described = describe_shape(scene, it, opacity, &mut sample);
+                }
+                add_emission(scene, path, it, opacity, &mut sample);
+            }
         });
         let Some(it) = surface else {
             add_background(scene, &path, &mut sample);
             break;
         };
         if path.scatterings > max_bounces {
+            break;
+        }
+        if path.scatterings == 0 && scene.is_holdout(&it) {
             break;
         }
         let frame = scene.shading_frame(&it);
@@ -207,10 +216,22 @@ fn transmitted(media: &Media, dist: f32) -> Rgb {
     media.current().map(|sigma| (-sigma * dist).exp())
 }
 
-/// The first surface that a ray from the camera does not pass, and its index of decisions.
-pub fn first_surface(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone) -> Option<(Interaction, u32)> {
+/// The first surface that a ray from the camera does not pass, and its index of decisions; what it has met is
+/// told to `sample`.
+pub fn first_surface(
+    scene: &Scene,
+    sampler: &Sampler,
+    ray: Ray,
+    cone: RayCone,
+    sample: &mut PixelSample,
+) -> Option<(Interaction, u32)> {
     let mut path = Path::from_camera(ray, cone);
-    next_surface(scene, sampler, &mut path, |_, _| ()).map(|it| (it, path.vertex))
+    let mut described = !scene.effects.geometry;
+    let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
+        Met::Surface(it, opacity) if !described => described = describe_shape(scene, it, opacity, sample),
+        _ => {}
+    });
+    surface.filter(|it| !scene.is_holdout(it)).map(|it| (it, path.vertex))
 }
 
 /// Lamps on a stretch of the way; they stop nothing.
@@ -262,7 +283,7 @@ fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
 /// the path stops there or not, as light sampling and the shadow passes have it.
 fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
     let le = scene.emission(it) * opacity;
-    if le.is_black() {
+    if le.is_black() || (path.last.is_none() && scene.is_holdout(it)) {
         return;
     }
     let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);

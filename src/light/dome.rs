@@ -1,4 +1,7 @@
-//! The world around everything: constant, or a lat-long image.
+//! The world around everything: constant, a lat-long image, or a function of direction.
+//!
+//! Of a function an image is but the map that light sampling goes by; what arrives is the function's value
+//! itself, so that what the map lacks is noise and never missing.
 //!
 //! Where directions that the surface samples find the light as well, light sampling takes what is
 //! brighter than the mean and leaves the rest to them (MIS compensation: Ondřej Karlík, Martin Šik, Petr
@@ -12,6 +15,7 @@ mod irradiance;
 pub use image::DomeImage;
 
 use std::f32::consts::PI;
+use std::fmt;
 use std::sync::Arc;
 
 use self::irradiance::IrradianceMap;
@@ -27,12 +31,17 @@ const FEWEST_EIGHTHS: f32 = 1.0;
 /// One step of a random number of 24 bits.
 const STEP: f64 = 1.0 / 16_777_216.0;
 
+/// Radiance from a unit direction of render space.
+pub type DomeRadiance = Arc<dyn Fn(Vec3) -> Rgb + Send + Sync>;
+
 /// A dome.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Dome {
     /// Radiance, or the factor of the image.
     radiance: Rgb,
     image: Option<DomeImage>,
+    /// What arrives, where the image is but its map.
+    exact: Option<DomeRadiance>,
     /// Irradiance of all of it and of what is brighter than the mean; `None` without an image.
     irradiance: Option<Arc<[IrradianceMap; 2]>>,
     /// Mean radiance over the sphere, luminance.
@@ -47,7 +56,12 @@ impl Dome {
             Some(maps) => maps[0].at(None) / (4.0 * PI),
             None => radiance.luminance(),
         };
-        Self { radiance, image, irradiance, mean }
+        Self { radiance, image, exact: None, irradiance, mean }
+    }
+
+    /// A dome of any radiance, sampled by `map` of it.
+    pub fn shaded(map: DomeImage, radiance: DomeRadiance) -> Self {
+        Self { exact: Some(radiance), ..Self::new(Rgb::WHITE, Some(map)) }
     }
 
     /// The image, where light sampling follows one that is brighter in places.
@@ -92,6 +106,14 @@ fn pdf_plain(at: &Receiver, wi: Vec3) -> f32 {
     at.n.map_or(warp::PDF_UNIFORM_SPHERE, |n| warp::pdf_cosine_hemisphere(n.dot(wi)))
 }
 
+impl fmt::Debug for Dome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut dome = f.debug_struct("Dome");
+        dome.field("radiance", &self.radiance).field("exact", &self.exact.is_some()).field("mean", &self.mean);
+        dome.finish_non_exhaustive()
+    }
+}
+
 impl Emitter for Dome {
     fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
         let share = self.plain_share(at);
@@ -103,7 +125,8 @@ impl Emitter for Dome {
             (wi, self.le(wi, None), self.pdf_li(at, wi, None))
         } else {
             let s = self.bright()?.sample([(u0 - share64) / (1.0 - share64), f64::from(u[1]) + 0.5 * STEP])?;
-            (s.wi, s.radiance * self.radiance, (1.0 - share) * s.pdf + share * pdf_plain(at, s.wi))
+            let li = self.exact.as_ref().map_or_else(|| s.radiance * self.radiance, |exact| exact(s.wi));
+            (s.wi, li, (1.0 - share) * s.pdf + share * pdf_plain(at, s.wi))
         };
         (pdf > 0.0 && !li.is_black()).then_some(LightSample { li, wi, end: None, pdf, delta: false })
     }
@@ -118,9 +141,10 @@ impl Emitter for Dome {
     }
 
     fn le(&self, wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
-        match &self.image {
-            None => self.radiance,
-            Some(image) => image.radiance(wi) * self.radiance,
+        match (&self.exact, &self.image) {
+            (Some(exact), _) => exact(wi),
+            (None, None) => self.radiance,
+            (None, Some(image)) => image.radiance(wi) * self.radiance,
         }
     }
 

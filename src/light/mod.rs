@@ -29,7 +29,7 @@ pub use choice::{Choice, Strategy};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use distant::Distant;
-pub use dome::{Dome, DomeImage};
+pub use dome::{Dome, DomeImage, DomeRadiance};
 pub use emission::Emission;
 pub use flat::Flat;
 pub use mesh::{MeshEmitters, MeshLight};

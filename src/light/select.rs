@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::choice::Selection;
-use super::{Choice, Emitter, EmitterHit, Light, LightBounds, LightTree, Receiver, Strategy};
+use super::{Choice, Emitter, EmitterHit, Light, LightBounds, LightTree, Receiver, Seen, Strategy};
 use crate::math::{Bounds, Vec3};
 
 /// Up to so many lamps are asked one by one whether a ray meets them.
@@ -60,7 +60,9 @@ impl LightSet {
             };
             (0..classes.clamp(1, 1 << 16)).map(of_class).collect()
         };
-        let selections = by_class(&|_| true);
+        // A light that only the camera sees lights nothing.
+        let scatters = |seen: &Seen| seen.diffuse || seen.glossy || seen.transmission;
+        let selections = by_class(&|light| scatters(&light.rules.seen));
         let is_of = |light: &Light, group: usize| light.rules.group.map(usize::from) == Some(group);
         let mut of_group = |group: usize| by_class(&|light| is_of(light, group) && light.rules.seen.diffuse);
         let of_groups =

@@ -17,6 +17,8 @@ pub struct Effects {
     pub indirect: bool,
     /// Some surface lets light pass unscattered: cut-outs and blends.
     pub cutouts: bool,
+    /// Some surface is a hole in the picture.
+    pub holdouts: bool,
     /// Some graph asks which path a ray is part of.
     pub light_path: bool,
     /// Some surface is a transmissive solid that absorbs.
@@ -69,6 +71,7 @@ impl Effects {
         Self {
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| !is_opaque(scene, m)),
+            holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
             light_path: any(&asks_path),
             absorption: any(&absorbs),
             lamps,
@@ -87,6 +90,7 @@ impl Effects {
             light: passes.needs_light(),
             indirect: passes.needs_indirect(),
             cutouts: true,
+            holdouts: true,
             light_path: true,
             absorption: true,
             occlusion_maps: true,

@@ -99,6 +99,7 @@ mod tests {
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: LightLinks::default(),
+            holdout: false,
         };
         let scene = SceneDesc { meshes: vec![mesh.into()], instances: vec![instance], ..SceneDesc::default() };
         for aspect in [0.3, 1.0, 3.0] {

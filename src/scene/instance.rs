@@ -71,6 +71,8 @@ pub struct Instance {
     pub receiver_class: u16,
     /// Rules of the light that it emits; `None` where it emits none.
     pub rules: Option<Box<Rules>>,
+    /// True where the camera sees a hole in the picture instead.
+    pub holdout: bool,
 }
 
 impl Instance {

@@ -123,6 +123,8 @@ pub struct Material {
     pub emission: ColorInput,
     /// True where nothing scatters and the base colour is emitted.
     pub unlit: bool,
+    /// The camera sees a hole in the picture instead.
+    pub holdout: bool,
     /// Normal map.
     pub normal: Option<NormalInput>,
     /// Baked occlusion; the factor is its strength.
@@ -305,6 +307,13 @@ impl Scene {
         let mut lookups = self.lookups(it, |programs| programs.occlusion.as_ref(), &mut values);
         let value = lookups.scalar(&ScalarInput { factor: 1.0, ..*occlusion });
         1.0 + occlusion.factor * (value - 1.0)
+    }
+}
+
+impl Scene {
+    /// True where the camera sees a hole in the picture instead of the surface.
+    pub fn is_holdout(&self, it: &Interaction) -> bool {
+        self.effects.holdouts && (self.instance(it.instance).holdout || self.material(it).holdout)
     }
 }
 

@@ -11,6 +11,7 @@ mod material;
 mod path_state;
 mod prepare;
 mod spot;
+mod surroundings;
 mod trace;
 
 pub use effects::Effects;
@@ -54,6 +55,8 @@ pub struct Scene {
     pub background_visible: bool,
     /// True where Combined lacks what lies behind everything.
     pub film_transparent: bool,
+    /// Opacity from which on a surface is what the data passes show.
+    pub pass_alpha_threshold: f32,
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,

@@ -13,6 +13,7 @@ mod links;
 mod materials;
 mod mend;
 mod shaping;
+mod suns;
 mod texels;
 
 use std::collections::BTreeSet;
@@ -77,7 +78,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names } = materials::prepare(&mut desc, settings, &mut warnings);
+    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
@@ -89,9 +90,10 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let lights = if effects.light || effects.group_shadows || passes.needs(Quantity::Environment) {
         let dome = default_dome.as_ref();
         let groups = passes.groups();
-        let shared = Shared { materials: &materials, textures: &textures, asked: &asked, camera, origin };
+        let (materials, textures) = (&materials, &textures);
+        let shared = Shared { materials, domes: &domes, textures, asked: &asked, camera, origin };
         let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, &mut warnings);
-        tell_of_darkness(&desc, &lights, &materials, &mut warnings);
+        tell_of_darkness(&desc, &lights, materials, &mut warnings);
         lights
     } else {
         Vec::new()
@@ -116,6 +118,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         lights,
         background_visible,
         film_transparent,
+        pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         shapes: geometry.shapes,

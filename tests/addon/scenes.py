@@ -143,6 +143,99 @@ def world_image():
     tree.links.new(environment.outputs[0], tree.nodes["Background"].inputs["Color"])
 
 
+def _background(color):
+    """Links an output of a node of the world to its Background; returns the tree."""
+    tree = bpy.context.scene.world.node_tree
+    tree.links.new(color, tree.nodes["Background"].inputs["Color"])
+    return tree
+
+
+def _nodes(*kinds):
+    room()
+    world(1.0)
+    tree = bpy.context.scene.world.node_tree
+    return [tree, *(tree.nodes.new(f"ShaderNode{kind}") for kind in kinds)]
+
+
+def world_gradient():
+    tree, coordinates, mapping, gradient, ramp = _nodes("TexCoord", "Mapping", "TexGradient", "ValToRGB")
+    mapping.inputs["Rotation"].default_value = (0.0, math.radians(90), 0.3)
+    mapping.inputs["Location"].default_value = (0.5, 0.0, 0.0)
+    mapping.inputs["Scale"].default_value = (0.5, 0.5, 0.5)
+    ramp.color_ramp.elements[0].color = (0.9, 0.5, 0.2, 1.0)
+    ramp.color_ramp.elements[1].color = (0.1, 0.3, 0.9, 1.0)
+    ramp.color_ramp.elements.new(0.4).color = (0.5, 0.6, 0.8, 1.0)
+    tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs[0], gradient.inputs[0])
+    tree.links.new(gradient.outputs[0], ramp.inputs[0])
+    _background(ramp.outputs[0])
+
+
+def world_clouds():
+    tree, noise, ramp = _nodes("TexNoise", "ValToRGB")
+    noise.inputs["Scale"].default_value = 3.0
+    noise.inputs["Detail"].default_value = 6.0
+    ramp.color_ramp.elements[0].position = 0.45
+    ramp.color_ramp.elements[0].color = (0.1, 0.2, 0.5, 1.0)
+    ramp.color_ramp.elements[1].position = 0.6
+    ramp.color_ramp.elements[1].color = (2.0, 1.8, 1.5, 1.0)
+    tree.links.new(noise.outputs[0], ramp.inputs[0])
+    _background(ramp.outputs[0])
+
+
+def world_camera_ray():
+    """Another background for the camera than for what lights the scene."""
+    tree, path, mix, other, noise = _nodes("LightPath", "MixShader", "Background", "TexNoise")
+    lit = tree.nodes["Background"]
+    lit.inputs["Color"].default_value = (0.8, 0.7, 0.5, 1.0)
+    tree.links.new(noise.outputs["Color"], other.inputs["Color"])
+    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+    tree.links.new(lit.outputs[0], mix.inputs[1])
+    tree.links.new(other.outputs[0], mix.inputs[2])
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+
+def world_mixed():
+    """Two Backgrounds, mixed by where one looks."""
+    tree, coordinates, parts, mix, other = _nodes("TexCoord", "SeparateXYZ", "MixShader", "Background")
+    tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.2, 0.8, 1.0)
+    other.inputs["Color"].default_value = (0.9, 0.8, 0.3, 1.0)
+    other.inputs["Strength"].default_value = 2.0
+    tree.links.new(coordinates.outputs["Object"], parts.inputs[0])
+    tree.links.new(parts.outputs[0], mix.inputs[0])
+    tree.links.new(tree.nodes["Background"].outputs[0], mix.inputs[1])
+    tree.links.new(other.outputs[0], mix.inputs[2])
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+
+def _sky(kind, **properties):
+    tree, sky = _nodes("TexSky")
+    sky.sky_type = kind
+    for key, value in properties.items():
+        setattr(sky, key, value)
+    tree.nodes["Background"].inputs["Strength"].default_value = 0.1
+    _background(sky.outputs[0])
+
+
+def sky_single():
+    """The model of one scattering, under the name that this version of Blender has for it."""
+    kind = "SINGLE_SCATTERING" if bpy.app.version >= (5, 0, 0) else "NISHITA"
+    _sky(kind, sun_elevation=0.5, sun_rotation=0.8)
+
+
+def sky_multiple():
+    if bpy.app.version >= (5, 0, 0):
+        _sky("MULTIPLE_SCATTERING", sun_elevation=0.5, sun_rotation=0.8)
+    else:
+        sky_single()
+
+
+def sky_preetham():
+    _sky("PREETHAM", turbidity=3.0, sun_direction=(0.3, 0.5, 0.8))
+
+
 def mesh_light():
     room()
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(1.2, -0.8, 2.5))

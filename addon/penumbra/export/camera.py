@@ -46,7 +46,7 @@ def _focus(obj, dof):
     return abs(view.z)
 
 
-def render(scene, size):
+def render(scene, size, view_layer):
     """Settings that are the scene's own."""
     cycles = getattr(scene, "cycles", None)
     result = {
@@ -54,6 +54,7 @@ def render(scene, size):
         "pixel_aspect": [scene.render.pixel_aspect_x, scene.render.pixel_aspect_y],
         "exposure": getattr(cycles, "film_exposure", 1.0),
         "film_transparent": scene.render.film_transparent,
+        "pass_alpha_threshold": view_layer.pass_alpha_threshold,
     }
     rectangle = border(scene, size)
     if rectangle is not None:

@@ -38,6 +38,7 @@ class Exporter:
 
     def export(self, depsgraph, size, camera_object=None, space=None):
         """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows."""
+        self._layer = depsgraph.view_layer
         self._materials, self._material_index = [], {}
         self._objects, self._object_index = [], {}
         self._lights = []
@@ -63,7 +64,7 @@ class Exporter:
         document = {
             "file": bpy.data.filepath,
             "version": list(bpy.app.version),
-            "render": camera.render(scene, size),
+            "render": camera.render(scene, size, depsgraph.view_layer_eval),
             "camera": camera.camera(camera_object or scene.camera, scene),
             "world": lights.world(scene.world, self),
             "lights": self._lights,
@@ -103,7 +104,8 @@ class Exporter:
                 "materials": [self._material(slot.material) for slot in obj.material_slots],
                 "pass_index": obj.pass_index,
                 "color": list(obj.color),
-                "visibility": self.visibility(obj),
+                "visibility": {**self.visibility(obj), **self._seen_by_camera(obj)},
+                "holdout": self._layer_says("holdout_get", obj),
                 "lightgroup": obj.lightgroup,
             })
             self._links.append((self._objects[-1], obj))
@@ -154,6 +156,15 @@ class Exporter:
     def visibility(self, obj):
         """Which rays see an object."""
         return {ray: getattr(obj, f"visible_{ray}") for ray in _RAYS}
+
+    def _seen_by_camera(self, obj):
+        """Objects of collections that only light others are not."""
+        return {"camera": False} if self._layer_says("indirect_only_get", obj) else {}
+
+    def _layer_says(self, question, obj):
+        """What the view layer says of an object: by itself or by its collections."""
+        ask = getattr(obj.original, question, None)
+        return bool(ask(view_layer=self._layer)) if ask is not None else False
 
     def _link(self, data, obj):
         """Light and shadow linking, as indices of objects."""

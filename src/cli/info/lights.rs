@@ -21,7 +21,7 @@ pub fn describe(light: &LightDesc, scene: &SceneDesc) -> Value {
         LightKind::Rect { .. } => ("rectangle", "W/(m2 sr)"),
         LightKind::Disk { .. } => ("disk", "W/(m2 sr)"),
         LightKind::Cylinder { .. } => ("cylinder", "W/(m2 sr)"),
-        LightKind::Dome { .. } => ("dome", "W/(m2 sr)"),
+        LightKind::Dome { .. } | LightKind::ShadedDome { .. } => ("dome", "W/(m2 sr)"),
     };
     let mut value = json!({ "name": &*light.name, "kind": kind, "value": light.kind.color(), "unit": unit });
     let Some(fields) = value.as_object_mut() else { return value };
@@ -38,7 +38,7 @@ pub fn describe(light: &LightDesc, scene: &SceneDesc) -> Value {
 fn shape(kind: LightKind, fields: &mut Map<String, Value>) {
     let mut set = |key: &str, value: Value| fields.insert(key.into(), value);
     match kind {
-        LightKind::Point { .. } | LightKind::Dome { .. } => {}
+        LightKind::Point { .. } | LightKind::Dome { .. } | LightKind::ShadedDome { .. } => {}
         LightKind::Sphere { radius, facing, .. } => {
             set("radius_m", json!(radius));
             if facing {
@@ -122,7 +122,7 @@ fn rules(light: &LightDesc, scene: &SceneDesc, fields: &mut Map<String, Value>) 
     let Visibility { camera, diffuse, glossy, transmission, .. } = light.visibility;
     let rays = [("camera", camera), ("diffuse", diffuse), ("glossy", glossy), ("transmission", transmission)];
     // Lamps are not seen by the camera, domes are.
-    let by_default = |ray: &str| ray != "camera" || matches!(light.kind, LightKind::Dome { .. });
+    let by_default = |ray: &str| ray != "camera" || light.kind.is_dome();
     let odd: Map<String, Value> = rays
         .iter()
         .filter(|(ray, seen)| *seen != by_default(ray))

@@ -174,6 +174,7 @@ fn kind(kind: LightKind, scene: &SceneDesc) -> Value {
         LightKind::Dome { radiance, image: texture } => {
             json!({ "kind": "dome", "radiance": radiance, "image": image(texture) })
         }
+        LightKind::ShadedDome { shader } => json!({ "kind": "shaded dome", "shader": shader }),
     }
 }
 

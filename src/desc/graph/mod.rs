@@ -21,6 +21,8 @@ mod build;
 mod function;
 mod leaf;
 mod op;
+mod replace;
+mod sky;
 
 pub use function::{Blend, Curves, Function, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
@@ -28,6 +30,7 @@ pub use op::{
     Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Scatter, Space, Voronoi, VoronoiFeature,
     VoronoiOutput, Wave, WaveDirection, WaveProfile,
 };
+pub use sky::{Atmosphere, Scattering, Sky};
 
 /// Four numbers.
 pub type Value = [f64; 4];

@@ -1,6 +1,6 @@
 //! The operations of a graph.
 
-use super::{Function, Leaf, Value, ValueId};
+use super::{Function, Leaf, Sky, Value, ValueId};
 
 /// An operation that makes one value.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,13 @@ pub enum Op {
     Apply(Function, Vec<ValueId>),
     /// A procedural texture; its type names the arguments.
     Procedural(Procedural, Vec<ValueId>),
+    /// A color of a sky, by a direction with z up.
+    Sky {
+        /// Which one.
+        sky: Sky,
+        /// Where.
+        direction: ValueId,
+    },
     /// A point, direction or normal carried from one space to another.
     Transform {
         /// What it is.
@@ -279,6 +286,7 @@ impl Op {
         let (list, few): (&[ValueId], [Option<ValueId>; 4]) = match self {
             Self::Constant(_) | Self::Leaf(_) => (&[], [None; 4]),
             Self::Image { uv, .. } => (&[], [Some(*uv), None, None, None]),
+            Self::Sky { direction, .. } => (&[], [Some(*direction), None, None, None]),
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None; 4]),
             Self::Transform { value, .. } => (&[], [Some(*value), None, None, None]),
             Self::Bump(b) => (&[], [b.height, b.strength, b.distance, b.normal].map(Some)),
@@ -291,6 +299,7 @@ impl Op {
         let (list, few): (&mut [ValueId], [Option<&mut ValueId>; 4]) = match self {
             Self::Constant(_) | Self::Leaf(_) => (&mut [], [None, None, None, None]),
             Self::Image { uv, .. } => (&mut [], [Some(uv), None, None, None]),
+            Self::Sky { direction, .. } => (&mut [], [Some(direction), None, None, None]),
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None, None, None, None]),
             Self::Transform { value, .. } => (&mut [], [Some(value), None, None, None]),
             Self::Bump(b) => (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some)),

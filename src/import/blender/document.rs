@@ -49,11 +49,20 @@ pub struct RenderData {
     pub exposure: f64,
     /// The world is not seen by the camera, alpha is 0 there.
     pub film_transparent: bool,
+    /// The view layer's.
+    pub pass_alpha_threshold: f64,
 }
 
 impl Default for RenderData {
     fn default() -> Self {
-        Self { size: [1920, 1080], pixel_aspect: [1.0; 2], border: None, exposure: 1.0, film_transparent: false }
+        Self {
+            size: [1920, 1080],
+            pixel_aspect: [1.0; 2],
+            border: None,
+            exposure: 1.0,
+            film_transparent: false,
+            pass_alpha_threshold: 0.5,
+        }
     }
 }
 
@@ -70,6 +79,7 @@ impl RenderData {
                 [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
             }),
             film_transparent: self.film_transparent,
+            pass_alpha_threshold: self.pass_alpha_threshold,
             ..RenderDesc::default()
         }
     }
@@ -369,6 +379,8 @@ pub struct ObjectData {
     pub color: [f64; 4],
     /// Which rays see it.
     pub visibility: VisibilityData,
+    /// `holdout_get`: it, or a collection that it is in, is a hole in the picture.
+    pub holdout: bool,
     /// Light group of what it emits.
     pub lightgroup: String,
     /// Whom its light falls on (light linking).
@@ -387,6 +399,7 @@ impl Default for ObjectData {
             pass_index: 0,
             color: [1.0; 4],
             visibility: VisibilityData::default(),
+            holdout: false,
             lightgroup: String::new(),
             receivers: None,
             blockers: None,

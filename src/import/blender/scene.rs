@@ -189,6 +189,7 @@ impl BlenderScene {
                 color: None,
                 visibility: data.visibility.into(),
                 links: LightLinks::default(),
+                holdout: data.holdout,
                 info: ObjectInfo {
                     color: data.color,
                     random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },
@@ -219,6 +220,10 @@ impl BlenderScene {
         warnings: &mut Warnings,
     ) {
         let document = &self.document;
+        if document.lights.iter().any(|light| light.is_portal) {
+            warnings
+                .push(&desc.place, "portals guide nothing here: the picture is the same without them, only its noise");
+        }
         for data in &document.lights {
             let shader = match &data.nodes {
                 Some(tree) => nodes::lamp(tree, images, desc.place.at(&data.name), warnings),
@@ -230,7 +235,7 @@ impl BlenderScene {
             desc.lights.push(light);
         }
         if let Some(world) = &document.world {
-            desc.lights.extend(world::dome(world, images, &desc.place, warnings));
+            world::add(world, images, desc, warnings);
         }
     }
 }

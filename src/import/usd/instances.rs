@@ -72,6 +72,7 @@ pub(super) fn place(
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
+            holdout: false,
         });
     }
 }

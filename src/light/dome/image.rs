@@ -85,6 +85,12 @@ impl DomeImage {
         Some(Self { table, ..image })
     }
 
+    /// The unit direction at coordinates of the image, in its own space.
+    pub fn direction([u, v]: [f64; 2]) -> Vec3 {
+        let ((sin_theta, cos_theta), (sin_phi, cos_phi)) = ((PI * v).sin_cos(), (TAU * (u - 0.5)).sin_cos());
+        DVec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi).as_vec3()
+    }
+
     /// True where it is brighter in places, by more than rounding.
     pub(super) fn has_bright_part(&self) -> bool {
         self.table.is_some()
@@ -110,10 +116,9 @@ impl DomeImage {
     /// A direction of the bright part by `u` in [0, 1)².
     pub(super) fn sample(&self, u: [f64; 2]) -> Option<Sampled> {
         let s = self.table.as_ref()?.sample(u, |x, y| self.weight(x, y));
-        let ((sin_theta, cos_theta), (sin_phi, cos_phi)) = ((PI * s.p[1]).sin_cos(), (TAU * (s.p[0] - 0.5)).sin_cos());
-        let local = DVec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi).as_vec3();
+        let sin_theta = (PI * s.p[1]).sin();
         let pdf = to_solid_angle(s.pdf, sin_theta);
-        let sampled = Sampled { wi: self.to_local.transpose() * local, radiance: self.lookup(s.p), pdf };
+        let sampled = Sampled { wi: self.to_local.transpose() * Self::direction(s.p), radiance: self.lookup(s.p), pdf };
         (sin_theta > 0.0 && pdf.is_finite()).then_some(sampled)
     }
 

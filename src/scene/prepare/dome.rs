@@ -1,10 +1,27 @@
-//! Domes: constant, or of an image.
+//! Domes: constant, of an image, or of a graph.
 
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::emissive::Shared;
 use super::mend::Mended;
 use super::texels::texels;
-use crate::desc::SceneDesc;
-use crate::light::{Dome, DomeImage};
+use super::{graphs, lamp};
+use crate::desc::{LightDesc, SceneDesc};
+use crate::light::{Dome, DomeImage, DomeRadiance};
 use crate::math::{Mat3, Rgb};
+use crate::scene::surroundings::Surroundings;
+
+/// Height of the map that light sampling goes by where a graph looks up no image; it is twice as wide.
+const MAP: usize = 256;
+
+/// Its least and largest height where it does.
+const MAP_OF_IMAGE: [usize; 2] = [512, 1024];
+
+/// Texels of the map that have less than this share of the mean are taken to have it: what the graph has
+/// between the points that were looked at is dark at most, never lost.
+const FLOOR: f32 = 1e-3;
 
 /// The dome of `radiance`, with the image of that index; `orientation` turns the image's space into
 /// render space. `None` for a black image.
@@ -23,6 +40,41 @@ pub fn prepare(
         mended.note(format!("its image \"{}\" is black", source.name));
     }
     image.map(|image| Dome::new(radiance, Some(image)))
+}
+
+/// The dome of shader `shader`; `None` for one that is black all over.
+pub fn shaded(desc: &SceneDesc, light: &LightDesc, shader: u32, shared: &Shared<'_>) -> Option<Dome> {
+    let of = &desc.dome_shaders[shader as usize];
+    let Shared { domes, textures, camera, origin, .. } = *shared;
+    let program = domes[shader as usize].clone();
+    let surroundings = Surroundings { program, textures: textures.clone(), camera, origin };
+    let radiance: DomeRadiance = Arc::new(move |wi| surroundings.radiance(wi));
+    let looked_up = graphs::looked_up(&of.graph, [of.radiance]);
+    let heights = looked_up.iter().map(|&t| desc.images[desc.textures[t as usize].image as usize].height as usize);
+    let height = heights.max().map_or(MAP, |height| height.clamp(MAP_OF_IMAGE[0], MAP_OF_IMAGE[1]));
+    let axes = lamp::axes(light, &mut Mended::default());
+    let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
+    let map = map(&radiance, 2 * height, height, orientation);
+    Some(Dome::shaded(DomeImage::new(2 * height, height, map, orientation)?, radiance))
+}
+
+/// The largest of four values in each texel, for a density that misses little.
+fn map(radiance: &DomeRadiance, width: usize, height: usize, orientation: Mat3) -> Vec<Rgb> {
+    let texel = |i: usize| {
+        let at = |dx: f64, dy: f64| {
+            let u = ((i % width) as f64 + dx) / width as f64;
+            let v = ((i / width) as f64 + dy) / height as f64;
+            radiance(orientation * DomeImage::direction([u, v]))
+        };
+        let corners = [at(0.25, 0.25), at(0.75, 0.25), at(0.25, 0.75), at(0.75, 0.75)];
+        corners.into_iter().fold(Rgb::BLACK, |a, b| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b)))
+    };
+    let mut map: Vec<Rgb> = (0..width * height).into_par_iter().map(texel).collect();
+    // In the order of the texels, for the same bits on any number of threads.
+    let mean = map.iter().map(|texel| f64::from(texel.max_component())).sum::<f64>() / map.len() as f64;
+    let floor = (mean * f64::from(FLOOR)) as f32;
+    map.iter_mut().filter(|texel| texel.max_component() < floor).for_each(|texel| *texel = Rgb::splat(floor));
+    map
 }
 
 #[cfg(test)]

@@ -49,7 +49,9 @@ struct Owner {
 pub struct Shared<'a> {
     /// All materials.
     pub materials: &'a [Material],
-    /// Their textures.
+    /// What domes emit that have a graph.
+    pub domes: &'a [Program],
+    /// Textures of all of them.
     pub textures: &'a Arc<Vec<Texture>>,
     /// What graphs ask of meshes and objects.
     pub asked: &'a Arc<Asked>,
@@ -234,7 +236,7 @@ impl<'a> Emissive<'a> {
     /// The light that the emissive primitives of `instance`, whose index is `index`, form; `None` where it
     /// has none.
     pub fn light(&mut self, instance: &Instance, index: u32, shape: &Shape) -> Option<AnyEmitter> {
-        let Shared { materials, textures, asked, camera, origin } = *self.shared;
+        let Shared { materials, textures, asked, camera, origin, .. } = *self.shared;
         let slots: Box<[Slot]> = instance.materials.iter().map(|&m| slot(&materials[m as usize], textures)).collect();
         // Graphs may ask where the object is.
         let owner = slots.iter().any(|slot| slot.programs.is_some()).then_some(index);

@@ -158,5 +158,6 @@ fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_
         light: None,
         receiver_class: 0,
         rules: None,
+        holdout: desc.holdout,
     })
 }

@@ -65,8 +65,13 @@ pub fn constant(
 
 /// Textures that values of a material's graph look up.
 pub fn textures(material: &MaterialDesc) -> Vec<u32> {
-    let needed = material.graph.needed(material.graph_values());
-    let looked_up = material.graph.ops().iter().zip(needed).filter_map(|(op, needed)| match op {
+    looked_up(&material.graph, material.graph_values())
+}
+
+/// Textures that `values` of a graph look up.
+pub fn looked_up(graph: &Graph, values: impl IntoIterator<Item = ValueId>) -> Vec<u32> {
+    let needed = graph.needed(values);
+    let looked_up = graph.ops().iter().zip(needed).filter_map(|(op, needed)| match op {
         Op::Image { texture, .. } if needed => Some(*texture),
         _ => None,
     });

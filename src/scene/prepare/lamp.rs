@@ -9,7 +9,7 @@ use crate::error::Warnings;
 use crate::light::{AnyEmitter, Cylinder, Distant, Flat, Point, Sphere};
 use crate::math::{DMat3, DVec3, Mat3, Vec3};
 
-/// The emitter of `light`; `None` where it emits nothing. All substitutes are told in one warning.
+/// The emitter of `light`, which is no shaded dome; `None` where it emits nothing. All substitutes are told in one warning.
 pub fn prepare(desc: &SceneDesc, light: &LightDesc, origin: DVec3, warnings: &mut Warnings) -> Option<AnyEmitter> {
     let mut mended = Mended::default();
     let emitter = emitter(desc, light, origin, &mut mended);
@@ -23,7 +23,7 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
         return None;
     }
     let axes = axes(light, mended);
-    let far = matches!(light.kind, LightKind::Distant { .. } | LightKind::Dome { .. });
+    let far = matches!(light.kind, LightKind::Distant { .. }) || light.kind.is_dome();
     let p = if far { Vec3::ZERO } else { position(light, origin, mended)? };
     let profile = if far { None } else { shaping::profile(desc, light, axes, mended)? };
     Some(match light.kind {
@@ -43,6 +43,7 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
             let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
             dome::prepare(desc, color, image, orientation, mended)?.into()
         }
+        LightKind::ShadedDome { .. } => return None,
         LightKind::Rect { .. } | LightKind::Disk { .. } => {
             let flat = Flat { profile, ..Flat::new(light.transform.translation - origin, axes, color) };
             flat::prepare(desc, light, flat, mended)?
@@ -60,7 +61,7 @@ fn position(light: &LightDesc, origin: DVec3, mended: &mut Mended) -> Option<Vec
 }
 
 /// Its orthonormal axes in render space.
-fn axes(light: &LightDesc, mended: &mut Mended) -> DMat3 {
+pub(super) fn axes(light: &LightDesc, mended: &mut Mended) -> DMat3 {
     if let Some(m) = proportions(light.transform.matrix3) {
         return orientation(m);
     }

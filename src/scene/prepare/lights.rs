@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
-use super::lamp;
 use super::links::Links;
-use crate::desc::{LightDesc, LightLinks, SceneDesc, Visibility};
+use super::{dome, lamp, suns};
+use crate::desc::{LightDesc, LightKind, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
 use crate::light::{Light, Rules, Seen};
 
@@ -34,7 +34,16 @@ pub fn prepare(
     };
     let mut lights = Vec::new();
     for light in desc.lights.iter().chain(extra) {
-        if let Some(emitter) = lamp::prepare(desc, light, shared.origin, warnings) {
+        let emitter = match light.kind {
+            LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared).map(Into::into),
+            _ => lamp::prepare(desc, light, shared.origin, warnings),
+        };
+        if let LightKind::ShadedDome { shader } = light.kind {
+            let rules = rules(&light.links, light.visibility);
+            let suns = suns::prepare(&desc.dome_shaders[shader as usize], light, warnings);
+            lights.extend(suns.into_iter().map(|sun| Light { emitter: sun.into(), rules: rules.clone() }));
+        }
+        if let Some(emitter) = emitter {
             lights.push(Light { emitter, rules: rules(&light.links, light.visibility) });
         }
     }

@@ -27,6 +27,8 @@ pub struct Materials {
     pub textures: Vec<Texture>,
     /// Attributes that their programs ask for.
     pub names: Names,
+    /// Programs of the radiance of `SceneDesc::dome_shaders`.
+    pub domes: Vec<Program>,
 }
 
 /// The materials of `desc`. Texels move out of `desc` into the textures.
@@ -45,16 +47,26 @@ pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warning
         // A material that nothing uses keeps its index, and none of its textures.
         .map(|(material, used)| builder.material(if used { material } else { &fallback }, warnings))
         .collect();
-    Materials { list, textures: builder.textures.list, names: builder.names }
+    let domes = desc.dome_shaders.iter();
+    let domes = domes.map(|shader| {
+        graphs::program(&fallback, &shader.graph, &[shader.radiance], &mut builder.textures, &mut builder.names)
+    });
+    let domes = domes.collect();
+    Materials { list, textures: builder.textures.list, names: builder.names, domes }
 }
 
-/// Pyramids of the images that materials in use look up, in parallel.
+/// Pyramids of the images that materials in use and domes look up, in parallel.
 fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) -> Vec<Option<Arc<Image>>> {
     let mut wanted = vec![false; desc.images.len()];
     let materials = desc.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material));
     for material in materials {
         let plain = material.textures().map(|texture| texture.texture);
         for texture in plain.chain(graphs::textures(material)) {
+            wanted[desc.textures[texture as usize].image as usize] = true;
+        }
+    }
+    for shader in &desc.dome_shaders {
+        for texture in graphs::looked_up(&shader.graph, [shader.radiance]) {
             wanted[desc.textures[texture as usize].image as usize] = true;
         }
     }
@@ -322,6 +334,7 @@ impl Builder<'_> {
             absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
             emission,
             unlit: desc.unlit,
+            holdout: desc.holdout,
             normal: normal_map,
             occlusion,
             programs: programs.any().then(|| Arc::new(programs)),

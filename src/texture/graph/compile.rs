@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::allocate;
 use super::hit::{Beside, HERE, varies};
 use super::program::{Action, MOST_ARGS, NEAR, Program};
+use super::sky::Sky;
 use super::steps::{Arg, Steps};
 use crate::desc::graph::{Bump, Graph, Leaf, Op, Value, ValueId};
 use crate::texture::TextureRef;
@@ -109,6 +110,10 @@ impl<'a, R: Resolve> Compiler<'a, R> {
             Op::Procedural(texture, ids) => {
                 let args = args(self, ids);
                 self.steps.step(Action::Procedural(*texture), args)
+            }
+            Op::Sky { sky, direction } => {
+                let args = args(self, &[*direction]);
+                self.steps.step(Action::Sky(Sky::new(sky)), args)
             }
             Op::Transform { quantity, from, to, value } => {
                 let args = args(self, &[*value]);

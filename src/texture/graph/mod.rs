@@ -20,6 +20,7 @@ mod compile;
 mod hit;
 mod procedural;
 mod program;
+mod sky;
 mod steps;
 
 #[cfg(test)]
@@ -28,3 +29,4 @@ mod tests;
 pub use compile::{Compiler, Resolve, Resolved};
 pub use hit::{Beside, HERE, Hit};
 pub use program::{Asks, Program};
+pub use sky::{Sky, sun_disk};

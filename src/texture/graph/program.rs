@@ -2,6 +2,7 @@
 
 use super::hit::{Beside, Hit};
 use super::procedural;
+use super::sky::Sky;
 use crate::desc::graph::{Function, Leaf, Math, Procedural, Quantity, Space, Value, finite};
 use crate::texture::{Texture, TextureRef};
 
@@ -43,6 +44,8 @@ pub(super) enum Action {
     Number(Math),
     /// A procedural texture.
     Procedural(Procedural),
+    /// A sky.
+    Sky(Sky),
     /// From space to space.
     Transform(Quantity, Space, Space),
     /// height here and at two points beside, strength, distance, normal.
@@ -131,6 +134,10 @@ impl Program {
                 },
                 Action::Procedural(texture) => {
                     procedural::eval(texture, self.gather(registers, args, &mut [[0.0; 4]; MOST_ARGS]))
+                }
+                Action::Sky(sky) => {
+                    let [r, g, b] = sky.radiance(arg(0)).to_array().map(f64::from);
+                    finite([r, g, b, 1.0])
                 }
                 Action::Transform(quantity, from, to) => finite(hit.transform(*quantity, *from, *to, arg(0))),
                 Action::Bump { filter_width, object_space } => {

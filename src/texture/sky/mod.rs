@@ -17,6 +17,7 @@ pub use color::ToRgb;
 pub use preetham::{Preetham, PreethamSky};
 
 use sun::Sun;
+pub use sun::SunDisk;
 use table::Table;
 
 /// Which atmosphere is computed.
@@ -75,6 +76,24 @@ impl Atmosphere {
     }
 }
 
+impl Atmosphere {
+    /// The sun's disc in the mean; `None` for a sky without one.
+    pub fn sun_disk(&self) -> Option<SunDisk> {
+        let mut this = *self;
+        (this.sun_elevation, this.sun_rotation) = sun::wrapped(self.sun_elevation, self.sun_rotation);
+        Sun::new(&this)?.disk(self.scattering.to_rgb())
+    }
+}
+
+impl Scattering {
+    fn to_rgb(self) -> ToRgb {
+        match self {
+            Self::Nishita => ToRgb::Blender4,
+            Self::Single | Self::Multiple => ToRgb::Blender5,
+        }
+    }
+}
+
 impl AtmosphereSky {
     /// Radiance from a unit direction, the sun's disc included.
     pub fn radiance(&self, direction: Vec3) -> Rgb {
@@ -93,11 +112,7 @@ impl AtmosphereSky {
     }
 
     fn to_rgb(&self, xyz: Vec3) -> Rgb {
-        let matrix = match self.scattering {
-            Scattering::Nishita => ToRgb::Blender4,
-            Scattering::Single | Scattering::Multiple => ToRgb::Blender5,
-        };
-        matrix.convert(xyz)
+        self.scattering.to_rgb().convert(xyz)
     }
 
     fn xyz(&self, direction: Vec3) -> Vec3 {

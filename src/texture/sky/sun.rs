@@ -2,8 +2,8 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use super::{Atmosphere, Scattering, multiple, single};
-use crate::math::{Vec3, safe_acos, safe_sqrt};
+use super::{Atmosphere, Scattering, ToRgb, multiple, single};
+use crate::math::{Frame, Rgb, Vec3, safe_acos, safe_sqrt};
 
 /// A disc that darkens toward its limb, its colour running from its lowest to its highest point.
 pub struct Sun {
@@ -16,6 +16,19 @@ pub struct Sun {
     /// Below this the earth is in the way.
     horizon: f32,
     scattering: Scattering,
+}
+
+/// A sun's disc in the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunDisk {
+    /// Unit direction to its middle.
+    pub direction: Vec3,
+    /// Full angle in radians, above 0.
+    pub diameter: f32,
+    /// Linear, mean over the disc, what lies below the horizon counted as black.
+    pub radiance: Rgb,
+    /// True where it takes the place of the sky; else it is added.
+    pub covers: bool,
 }
 
 /// Elevation within a quarter turn of the horizon and rotation, counter-clockwise, within one turn, that
@@ -55,6 +68,27 @@ impl Sun {
             horizon,
             scattering: atmosphere.scattering,
         })
+    }
+
+    /// The disc in the mean; `None` where nothing of it is seen.
+    pub fn disk(&self, to_rgb: ToRgb) -> Option<SunDisk> {
+        /// Rings of the same area, and points on each.
+        const RINGS: [usize; 2] = [32, 64];
+        let frame = Frame::from_z(self.direction);
+        let mut sum = Vec3::ZERO;
+        for ring in 0..RINGS[0] {
+            let angle = 0.5 * self.diameter * ((ring as f32 + 0.5) / RINGS[0] as f32).sqrt();
+            for point in 0..RINGS[1] {
+                let (sin, cos) = (TAU * (point as f32 + 0.5) / RINGS[1] as f32).sin_cos();
+                let local = Vec3::new(angle.sin() * cos, angle.sin() * sin, angle.cos());
+                sum += self.radiance(frame.to_world(local)).unwrap_or(Vec3::ZERO);
+            }
+        }
+        let radiance = to_rgb.convert(sum / (RINGS[0] * RINGS[1]) as f32);
+        let (direction, diameter) = (self.direction, self.diameter);
+        let covers = self.scattering == Scattering::Nishita;
+        let seen = diameter > 0.0 && radiance.is_finite() && !radiance.is_black();
+        seen.then_some(SunDisk { direction, diameter, radiance, covers })
     }
 
     /// XYZ from a unit direction inside the disc.

@@ -7,8 +7,8 @@ use super::super::image::Images;
 use super::super::layers::UvSets;
 use super::tree::{NodeData, SocketData, TreeData};
 use super::values;
-use crate::desc::DecayDesc;
 use crate::desc::graph::{Graph, ValueId};
+use crate::desc::{DecayDesc, DomeSun};
 use crate::error::{Place, Warnings};
 
 /// A node in its scope.
@@ -55,6 +55,10 @@ pub struct Flow<'a, 'i> {
     pub place: Place,
     /// What a Light Falloff node says.
     pub falloff: Option<DecayDesc>,
+    /// Suns of the skies so far.
+    pub suns: Vec<DomeSun>,
+    /// True for the tree of a world.
+    pub is_world: bool,
     warnings: &'a mut Warnings,
     scopes: Vec<Scope<'a>>,
     entered: HashMap<(usize, usize), usize>,
@@ -80,6 +84,8 @@ impl<'a, 'i> Flow<'a, 'i> {
             version,
             place,
             falloff: None,
+            suns: Vec::new(),
+            is_world: false,
             warnings,
             scopes: vec![Scope { tree, group: None }],
             entered: HashMap::new(),

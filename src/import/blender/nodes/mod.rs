@@ -11,6 +11,7 @@ mod input;
 mod lamp;
 mod math;
 mod procedural;
+mod sky;
 mod surface;
 mod tables;
 mod texture;
@@ -24,7 +25,7 @@ pub use tree::{NodeData, SocketData, TreeData, Value};
 use super::image::Images;
 use super::layers::UvSets;
 use super::light::LampShader;
-use super::world::WorldShader;
+use super::world::WorldPart;
 use crate::desc::MaterialDesc;
 use crate::error::{Place, Warnings};
 use flow::Flow;
@@ -36,8 +37,8 @@ pub fn lamp(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &m
     lamp::lamp(&mut Flow::new(tree, images, &uv_sets, version, place, warnings))
 }
 
-/// What the nodes of a world emit; `None` for nothing.
-pub fn world(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> Option<WorldShader> {
+/// What the nodes of a world emit.
+pub fn world(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &mut Warnings) -> Vec<WorldPart> {
     let version = images.version();
     let uv_sets = UvSets::default();
     world::world(&mut Flow::new(tree, images, &uv_sets, version, place, warnings))

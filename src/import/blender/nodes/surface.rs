@@ -40,6 +40,8 @@ struct Meaning {
     /// Share that passes unscattered, a number.
     transparent: Option<ValueId>,
     emission: Option<ValueId>,
+    /// The camera sees a hole.
+    holdout: bool,
 }
 
 /// `base` with the surface of the tree.
@@ -52,9 +54,10 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
         None => Vec::new(),
     };
     let zero = flow.graph.number(0.0);
-    let (mut transparent, mut emitted, mut scattered) = (zero, zero, Vec::new());
+    let (mut transparent, mut emitted, mut scattered, mut holdout) = (zero, zero, Vec::new(), false);
     for part in parts {
-        let Meaning { bsdf, transparent: passes, emission } = meaning(flow, part);
+        let Meaning { bsdf, transparent: passes, emission, holdout: is_hole } = meaning(flow, part);
+        holdout |= is_hole;
         if let Some(passes) = passes {
             transparent = flow.graph.add(transparent, passes);
         }
@@ -77,7 +80,7 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
     }
     let black = black(flow);
     let mixed = mixed(flow, &scattered).unwrap_or(black);
-    finish(flow, base, mixed, opaque, emission)
+    finish(flow, MaterialDesc { holdout, ..base }, mixed, opaque, emission)
 }
 
 /// The BSDF of the weighted mean of parameters; weights are relative.
@@ -157,7 +160,10 @@ fn meaning<'a>(flow: &mut Flow<'a, '_>, part: Part<'a>) -> Meaning {
             return Meaning { transparent: Some(share), ..Meaning::default() };
         }
         "ShaderNodeHoldout" => {
-            flow.warn("Holdout is rendered as a transparent surface, which shows what lies behind");
+            if flow.graph.known(weight) == Some([1.0; 4]) {
+                return Meaning { holdout: true, ..Meaning::default() };
+            }
+            flow.warn("a Holdout that is mixed with others is rendered as transparent, which shows what lies behind");
             return Meaning { transparent: Some(weight), ..Meaning::default() };
         }
         "ShaderNodeBsdfDiffuse" => Layered { base_color: flow.input(at, "Color"), roughness: one, ..none },
@@ -241,7 +247,7 @@ fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, weight: ValueId, none: La
     let emitted = flow.graph.multiply(color, strength);
     let seen = flow.graph.multiply(emitted, alpha);
     let emission = flow.graph.multiply(seen, weight);
-    Meaning { bsdf: Some(bsdf), transparent: Some(transparent), emission: Some(emission) }
+    Meaning { bsdf: Some(bsdf), transparent: Some(transparent), emission: Some(emission), holdout: false }
 }
 
 /// The material of its parameters, constants as such.

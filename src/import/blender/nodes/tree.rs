@@ -128,6 +128,13 @@ impl NodeData {
         self.properties.get(name).and_then(Json::as_f64)
     }
 
+    /// A property that is three numbers.
+    pub fn vector(&self, name: &str) -> Option<[f64; 3]> {
+        let list = self.properties.get(name)?.as_array()?;
+        let place = |i: usize| list.get(i).and_then(Json::as_f64);
+        Some([place(0)?, place(1)?, place(2)?])
+    }
+
     /// A property that is a flag; false where there is none.
     pub fn flag(&self, name: &str) -> bool {
         self.properties.get(name).and_then(Json::as_bool).unwrap_or(false)

@@ -1,7 +1,7 @@
 //! The table of nodes that make values: `bl_idname` and what its outputs are.
 
 use super::flow::{At, Flow};
-use super::{color, input, lamp, math, procedural, texture, vector};
+use super::{color, input, lamp, math, procedural, sky, texture, vector};
 use crate::desc::graph::ValueId;
 
 /// What the output of this identifier of a node is.
@@ -56,6 +56,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeTexGradient", procedural::gradient),
     ("ShaderNodeTexWhiteNoise", procedural::white_noise),
     ("ShaderNodeTexGabor", procedural::gabor),
+    ("ShaderNodeTexSky", sky::sky),
     ("ShaderNodeMapping", vector::mapping),
     ("ShaderNodeNormal", vector::normal),
     ("ShaderNodeNormalMap", vector::normal_map),

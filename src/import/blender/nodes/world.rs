@@ -1,18 +1,20 @@
-//! Worlds: a constant radiance, or a lat-long image turned.
+//! Worlds: a constant radiance, a lat-long image turned, or what any graph says.
 
-use super::super::world::WorldShader;
+use super::super::world::{Seen, WorldEmission, WorldPart};
 use super::closure;
 use super::flow::Flow;
 use super::lamp::emission;
-use crate::desc::graph::{Function, Leaf, Mapping, Math, Op, ValueId};
+use crate::desc::DomeShader;
+use crate::desc::graph::{Function, Leaf, Mapping, Math, Op, PathInfo, ValueId};
 use crate::math::{DMat3, DVec3};
 
-/// What the nodes of a world emit; `None` for nothing.
-pub fn world(flow: &mut Flow<'_, '_>) -> Option<WorldShader> {
-    let output = flow.output_node("ShaderNodeOutputWorld")?;
-    let parts = closure::parts(flow, output, output.node.input("Surface")?);
+/// What the nodes of a world emit: a part for each kind of ray that sees another thing.
+pub fn world(flow: &mut Flow<'_, '_>) -> Vec<WorldPart> {
+    flow.is_world = true;
+    let Some(output) = flow.output_node("ShaderNodeOutputWorld") else { return Vec::new() };
+    let Some(surface) = output.node.input("Surface") else { return Vec::new() };
     let mut sum = flow.graph.number(0.0);
-    for part in parts {
+    for part in closure::parts(flow, output, surface) {
         if !matches!(part.at.node.r#type.as_str(), "ShaderNodeBackground" | "ShaderNodeEmission") {
             let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
             flow.warn(format!("the shader \"{name}\" ({kind}) of a world is not supported; it is left out"));
@@ -21,19 +23,84 @@ pub fn world(flow: &mut Flow<'_, '_>) -> Option<WorldShader> {
         let emitted = emission(flow, part.at, part.weight);
         sum = flow.graph.add(sum, emitted);
     }
+    let mut parts = Vec::new();
+    for (value, seen) in by_rays(flow, sum) {
+        parts.push(WorldPart { emission: dome(flow, value), seen });
+    }
+    parts
+}
+
+/// What each kind of ray sees. Light sampling and rays that surfaces sample find the same: that a world is
+/// seen from a diffuse surface is a matter of the surface, not of how light was found.
+fn by_rays(flow: &mut Flow<'_, '_>, sum: ValueId) -> Vec<(ValueId, Seen)> {
+    let needed = flow.graph.needed([sum]);
+    let asked: Vec<PathInfo> = flow
+        .graph
+        .ops()
+        .iter()
+        .zip(needed)
+        .filter_map(|(op, needed)| match op {
+            Op::Leaf(Leaf::Path(info)) if needed => Some(*info),
+            _ => None,
+        })
+        .collect();
+    if asked.is_empty() {
+        return vec![(sum, Seen::ALL)];
+    }
+    use PathInfo as P;
+    if asked.iter().any(|info| {
+        matches!(
+            info,
+            P::IsSingular
+                | P::Length
+                | P::Depth
+                | P::DiffuseDepth
+                | P::GlossyDepth
+                | P::TransmissionDepth
+                | P::TransparentDepth
+        )
+    }) {
+        flow.warn("the world goes by the length or depth of paths, or by perfect mirrors: taken as of the first bounce of rough surfaces");
+    }
+    let none = Seen { camera: false, diffuse: false, glossy: false, transmission: false };
+    let kinds: [(Seen, &[PathInfo]); 4] = [
+        (Seen { camera: true, ..none }, &[P::IsCamera]),
+        (Seen { diffuse: true, ..none }, &[P::IsDiffuse, P::IsReflection, P::Depth, P::DiffuseDepth]),
+        (Seen { glossy: true, ..none }, &[P::IsGlossy, P::IsReflection, P::Depth, P::GlossyDepth]),
+        (Seen { transmission: true, ..none }, &[P::IsGlossy, P::IsTransmission, P::Depth, P::TransmissionDepth]),
+    ];
+    let mut parts: Vec<(ValueId, Seen)> = Vec::new();
+    for (seen, yes) in kinds {
+        let value = flow.graph.replaced(sum, |_, op| match op {
+            Op::Leaf(Leaf::Path(info)) => Some([f64::from(u8::from(yes.contains(info))); 4]),
+            _ => None,
+        });
+        match parts.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, all)) => {
+                all.camera |= seen.camera;
+                all.diffuse |= seen.diffuse;
+                all.glossy |= seen.glossy;
+                all.transmission |= seen.transmission;
+            }
+            None => parts.push((value, seen)),
+        }
+    }
+    parts
+}
+
+/// What one kind of ray sees.
+fn dome(flow: &mut Flow<'_, '_>, value: ValueId) -> WorldEmission {
     let mut factor = [1.0; 3];
-    let rest = factored(flow, sum, &mut factor);
+    let rest = factored(flow, value, &mut factor);
     if let Some([r, g, b, _]) = flow.graph.known(rest) {
-        let radiance = [r * factor[0], g * factor[1], b * factor[2]];
-        return Some(WorldShader { radiance, image: None, turn: DMat3::IDENTITY });
+        return WorldEmission::Constant([r * factor[0], g * factor[1], b * factor[2]]);
     }
     if let Some((texture, turn)) = equirectangular(flow, rest) {
-        return Some(WorldShader { radiance: factor, image: Some(flow.images.image_of(texture)), turn });
+        return WorldEmission::Image { factor, image: flow.images.image_of(texture), turn };
     }
-    flow.warn(
-        "the world's nodes are more than an environment texture times a color, which is not supported yet: black",
-    );
-    None
+    let needed = flow.graph.needed([value]);
+    let suns = flow.suns.iter().copied().filter(|sun| needed[sun.sky.index()]).collect();
+    WorldEmission::Graph(DomeShader { graph: flow.graph.clone(), radiance: value, suns })
 }
 
 /// Takes constant factors off a product.

@@ -35,6 +35,8 @@ pub(super) fn scaled(mut kind: LightKind, factor: f64) -> LightKind {
         | LightKind::Disk { radiance: color, .. }
         | LightKind::Cylinder { radiance: color, .. }
         | LightKind::Dome { radiance: color, .. } => *color = times(*color, factor),
+        // USD makes none.
+        LightKind::ShadedDome { .. } => {}
     }
     kind
 }

@@ -275,6 +275,7 @@ mod tests {
                     info: crate::desc::ObjectInfo::default(),
                     visibility: crate::desc::Visibility::ALL,
                     links: LightLinks::default(),
+                    holdout: false,
                 });
             }
             let kind = crate::desc::LightKind::Dome { radiance: [1.0; 3], image: None };
