@@ -48,8 +48,8 @@ def moving():
     camera.data.dof.use_dof = True
     camera.data.dof.focus_object = lamp
     scene = bpy.context.scene
-    scene.frame_start, scene.frame_end = 1, 5
-    for frame, energy, spread in ((1, 100.0, 3.0), (5, 200.0, 1.0)):
+    scene.frame_start, scene.frame_end = 1, 6
+    for frame, energy, spread in ((1, 100.0, 3.0), (5, 200.0, 1.0), (6, 100.0, 3.0)):
         scene.frame_set(frame)
         lamp.data.energy, lamp.data.spread = energy, spread
         lamp.location.x = frame

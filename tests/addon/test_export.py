@@ -105,7 +105,7 @@ def test_the_world_lies_as_in_cycles(blender, tmp_path, ending):
 def test_what_moves_is_there_at_each_frame(blender, tmp_path, ending):
     path = tmp_path / f"moving.{ending}"
     (_, left), _ = blender.run("export", "moving", path, "animation")
-    for frame, energy, spread in ((1, 100.0, 3.0), (3, 150.0, 2.0), (5, 200.0, 1.0)):
+    for frame, energy, spread in ((1, 100.0, 3.0), (3, 150.0, 2.0), (5, 200.0, 1.0), (6, 100.0, 3.0)):
         values, _ = read(path, "--frame", str(frame))
         (light,) = values["lights"]
         assert close(light["kind"]["radiance"], [energy / np.pi] * 3, 1e-5)

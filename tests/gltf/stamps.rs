@@ -65,7 +65,7 @@ pub fn rich() -> Glb {
             { "name": "Area", "rotation": DOWN, "translation": [0, 3, 0], "scale": [2, 1, 1], "extensions": stamp(&json!({
                 "light": { "name": "Area", "type": "AREA", "energy": 100, "shape": "ELLIPSE", "size": 0.5, "size_y": 0.25,
                            "spread": 1, "use_shadow": false, "lightgroup": "key", "visibility": { "camera": false } },
-                "frames": [[1, {}], [3, { "light": { "energy": 200 } }]],
+                "frames": [{ "frame": 3, "changes": { "light": { "energy": 200 } } }, { "frame": 10 }],
             })) },
             { "name": "Point", "scale": [2, 2, 2], "extensions": stamp(&json!({
                 "light": { "name": "Point", "type": "POINT", "energy": 100, "radius": 0.1, "nodes": lamp,
@@ -128,9 +128,14 @@ fn worlds_and_cameras_are_what_blender_has() {
 /// The stamp's frames are Blender's; glTF counts seconds.
 #[test]
 fn what_is_animated_has_the_frame_that_is_asked_for() {
-    for (frame, fps, watts) in
-        [(1.0, 24.0, 100.0), (2.9, 24.0, 100.0), (3.0, 24.0, 200.0), (9.0, 24.0, 200.0), (3.0, 48.0, 100.0)]
-    {
+    for (frame, fps, watts) in [
+        (1.0, 24.0, 100.0),
+        (2.9, 24.0, 100.0),
+        (3.0, 24.0, 200.0),
+        (9.0, 24.0, 200.0),
+        (10.0, 24.0, 100.0),
+        (3.0, 48.0, 100.0),
+    ] {
         let scene = load_with(&rich(), &ImportOptions { frame: Some(frame), fps, ..ImportOptions::default() });
         near(light(&scene, "Area").kind.color()[0], watts / (PI * 0.25 * PI * 0.25));
     }

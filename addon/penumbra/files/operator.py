@@ -3,6 +3,7 @@
 import argparse
 import os
 import traceback
+from contextlib import nullcontext
 
 import bpy
 from bpy_extras.io_utils import ExportHelper
@@ -78,8 +79,11 @@ def command(arguments):
     parser.add_argument("--animation", action="store_true", help="all frames of the scene")
     parser.add_argument("--instancing", action="store_true", help="instances instead of copies")
     options = parser.parse_args(arguments)
+    windows = bpy.context.window_manager.windows
     try:
-        told = export(bpy.context, options.file, options.selected, options.animation, options.instancing)
+        # A command runs outside of any window, and glTF's exporter asks for what only they know.
+        with bpy.context.temp_override(window=windows[0]) if windows else nullcontext():
+            told = export(bpy.context, options.file, options.selected, options.animation, options.instancing)
     except (ValueError, OSError, RuntimeError) as error:
         print(f"error: {_plain(error)}")
         return 1

@@ -28,7 +28,6 @@ class Stamps(Exporter):
         self._unit = unit
         self._frames = range(self._scene.frame_start, self._scene.frame_end + 1) if animation else ()
         self._saved = {}
-        self._owned = None
 
     def all(self):
         """Stamps by the names of their objects, the world's under None."""
@@ -72,8 +71,8 @@ class Stamps(Exporter):
                     changes = _difference(stamps[name], self._stamp(read, source))
                     frames = stamps[name].setdefault("frames", [])
                     # What was so at the frame before needs no word.
-                    if (frames[-1][1] if frames else {}) != changes:
-                        frames.append([frame, changes])
+                    if (frames[-1]["changes"] if frames else {}) != changes:
+                        frames.append({"frame": frame, "changes": changes})
         finally:
             self._scene.frame_set(now, subframe=part)
 

@@ -37,8 +37,7 @@ def write(context, path, selected, animation, instancing):
         evaluation_mode="RENDER",
     )
     # Blender 4.2 takes its own unit for the file's, as long as that may be.
-    writes_meters = "meters_per_unit" in exporter.get_rna_type().properties
-    unit = 1.0 if writes_meters else context.scene.unit_settings.scale_length
+    unit = 1.0 if supported(exporter, meters_per_unit=1.0) else context.scene.unit_settings.scale_length
     stamps = Stamps(context, path, unit, animation)
     stamps.warnings += _lost(context, instancing)
     with _stamped(context, stamps):

@@ -61,7 +61,15 @@ pub struct Stamp {
     /// What nodes name; paths start from the file's folder.
     images: HashMap<String, ImageData>,
     /// What differs at each of these frames.
-    frames: Vec<(f64, Json)>,
+    frames: Vec<FrameData>,
+}
+
+/// What differs from the rest of the stamp from a frame on.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+struct FrameData {
+    frame: f64,
+    changes: Json,
 }
 
 impl Default for Stamp {
@@ -108,9 +116,10 @@ impl Stamp {
             Moment::Seconds(seconds) => Some(seconds * stamp.fps),
         };
         let frames = std::mem::take(&mut stamp.frames);
-        if let Some((_, changes)) = now.and_then(|now| frames.iter().rfind(|(frame, _)| *frame <= now + 1e-6)) {
+        let at = |now: f64| frames.iter().rfind(|at| at.frame <= now + 1e-6);
+        if let Some(at) = now.and_then(at).filter(|at| at.changes.is_object()) {
             let mut json = json;
-            merge(&mut json, changes);
+            merge(&mut json, &at.changes);
             stamp = parse(&json)?;
         }
         for image in stamp.images.values_mut().filter(|image| !image.path.is_empty()) {
