@@ -16,7 +16,7 @@ use super::image::Images;
 use super::light::LampShader;
 use super::transform::affine;
 use super::{camera, light, nodes, world};
-use crate::desc::{CameraDesc, ImageDesc, LightDesc, LightKind, ProjectionDesc, RenderDesc};
+use crate::desc::{CameraDesc, ImageDesc, LightDesc, LightKind, ProjectionDesc, RenderDesc, SceneDesc};
 use crate::error::{Place, Warnings};
 use crate::math::{DAffine3, DMat3};
 
@@ -222,9 +222,16 @@ impl Stamp {
         images: &mut Vec<ImageDesc>,
         warnings: &mut Warnings,
     ) -> Option<LightDesc> {
-        let (dome, first) =
-            self.with_images(place, images, warnings, |images, warnings| world::dome(world, images, place, warnings));
-        let mut dome = dome?;
+        let mut made = SceneDesc { place: place.clone(), ..SceneDesc::default() };
+        let ((), first) = self
+            .with_images(place, images, warnings, |images, warnings| world::add(world, images, &mut made, warnings));
+        if made.lights.iter().any(|light| matches!(light.kind, LightKind::ShadedDome { .. })) || made.lights.len() > 1 {
+            let what = "the stamped world is more than an image or a colour, which only Blender itself hands over; \
+                        the plain dome counts";
+            warnings.push(place, what);
+            return None;
+        }
+        let mut dome = made.lights.pop()?;
         if let LightKind::Dome { image: Some(image), .. } = &mut dome.kind {
             *image += first;
         }
