@@ -366,3 +366,32 @@ def hair():
     add("Hair", curves)
     bpy.context.scene.cycles_curves.shape = "THICK"
     lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def holdout():
+    """A hole in the picture by an object, one by a material, and one that only lights the others."""
+    room()
+    bpy.context.scene.render.film_transparent = True
+    bpy.data.objects["Cube"].is_holdout = True
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2.0, 0.0, 0.51))
+    bpy.context.object.data.materials.append(material("Hole", "ShaderNodeHoldout"))
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(-2.0, 0.0, 0.51))
+    hidden = bpy.context.object
+    collection = bpy.data.collections.new("Hidden")
+    bpy.context.scene.collection.children.link(collection)
+    bpy.context.scene.collection.objects.unlink(hidden)
+    collection.objects.link(hidden)
+    bpy.context.view_layer.layer_collection.children["Hidden"].indirect_only = True
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+    world(0.3)
+
+
+def thin():
+    """Panes on both sides of the threshold that data passes go by."""
+    room()
+    bpy.context.view_layer.pass_alpha_threshold = 0.5
+    for x, alpha in ((-1.5, 0.3), (0.0, 0.6), (1.5, 0.8)):
+        bpy.ops.mesh.primitive_plane_add(size=1.2, location=(x, -1.5, 1.5), rotation=(0.8, 0.0, 0.0))
+        bpy.context.object.data.materials.append(material(f"Pane {alpha}", Alpha=alpha))
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+    world(0.3)

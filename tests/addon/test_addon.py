@@ -47,7 +47,9 @@ def test_f12_fills_every_pass(blender, tmp_path):
 
 @pytest.mark.parametrize(
     "name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "falloff_linear", "world_image", "mesh_light",
-             "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured"]
+             "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured",
+             "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
+             "sky_preetham", "holdout", "thin"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
     paths, _ = blender.run("side_by_side", name, tmp_path, 64, 48)

@@ -106,6 +106,7 @@ class Exporter:
                 "color": list(obj.color),
                 "visibility": {**self.visibility(obj), **self._seen_by_camera(obj)},
                 "holdout": self._layer_says("holdout_get", obj),
+                "shadow_catcher": obj.is_shadow_catcher,
                 "lightgroup": obj.lightgroup,
             })
             self._links.append((self._objects[-1], obj))

@@ -381,6 +381,8 @@ pub struct ObjectData {
     pub visibility: VisibilityData,
     /// `holdout_get`: it, or a collection that it is in, is a hole in the picture.
     pub holdout: bool,
+    /// `is_shadow_catcher`.
+    pub shadow_catcher: bool,
     /// Light group of what it emits.
     pub lightgroup: String,
     /// Whom its light falls on (light linking).
@@ -400,6 +402,7 @@ impl Default for ObjectData {
             color: [1.0; 4],
             visibility: VisibilityData::default(),
             holdout: false,
+            shadow_catcher: false,
             lightgroup: String::new(),
             receivers: None,
             blockers: None,

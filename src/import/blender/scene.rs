@@ -200,6 +200,12 @@ impl BlenderScene {
         if lost > 0 {
             warnings.push(&desc.place, format!("{lost} instances of unknown objects are left out"));
         }
+        let catchers: Vec<&str> =
+            document.objects.iter().filter(|object| object.shadow_catcher).map(|object| object.name.as_str()).collect();
+        if !catchers.is_empty() {
+            let what = format!("shadow catchers are rendered as the objects that they are: {}", catchers.join(", "));
+            warnings.push(&desc.place, what);
+        }
         for (object, data) in document.objects.iter().enumerate() {
             if data.lightgroup.is_empty() && data.receivers.is_none() && data.blockers.is_none() {
                 continue;

@@ -193,7 +193,7 @@ impl Stamp {
         if camera.clip_far <= camera.clip_near {
             camera.clip_far = f64::INFINITY;
         }
-        if !(camera.exposure >= 0.0) {
+        if camera.exposure.is_nan() || camera.exposure < 0.0 {
             camera.exposure = 1.0;
         }
         Ok(camera)

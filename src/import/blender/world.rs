@@ -91,3 +91,80 @@ pub fn add(data: &WorldData, images: &mut Images<'_>, desc: &mut SceneDesc, warn
         desc.lights.push(light);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::BlenderScene;
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// A node whose inputs are (name, type, value or link).
+    fn node(kind: &str, inputs: &[(&str, &str, Value)], properties: Value) -> Value {
+        let input = |(name, of, value): &(&str, &str, Value)| match value.get("link") {
+            Some(link) => json!({"id": name, "name": name, "type": of, "enabled": true, "link": link}),
+            None => json!({"id": name, "name": name, "type": of, "enabled": true, "value": value}),
+        };
+        let outputs = match kind {
+            "ShaderNodeLightPath" => json!([{"id": "Is Camera Ray", "type": "VALUE"}]),
+            "ShaderNodeTexSky" | "ShaderNodeTexNoise" => json!([{"id": "Color", "type": "RGBA"}]),
+            _ => json!([{"id": "Background", "type": "SHADER"}]),
+        };
+        let inputs: Vec<Value> = inputs.iter().map(input).collect();
+        json!({"name": kind, "type": kind, "inputs": inputs, "outputs": outputs, "properties": properties})
+    }
+
+    fn world(nodes: &[Value]) -> (SceneDesc, Warnings) {
+        let mut scene = BlenderScene::default();
+        let document = json!({"version": [5, 0, 1], "world": {"name": "World", "nodes": {"nodes": nodes}}});
+        scene.set_document(&document.to_string()).unwrap();
+        let mut warnings = Warnings::new();
+        let desc = scene.scene(&mut warnings).unwrap();
+        (desc, warnings)
+    }
+
+    fn background(color: Value, strength: f64) -> Value {
+        node("ShaderNodeBackground", &[("Color", "RGBA", color), ("Strength", "VALUE", json!(strength))], json!({}))
+    }
+
+    fn output() -> Value {
+        node("ShaderNodeOutputWorld", &[("Surface", "SHADER", json!({"link": [1, 0]}))], json!({}))
+    }
+
+    #[test]
+    fn the_camera_sees_one_background_and_all_else_another() {
+        let mix = [
+            ("Fac", "VALUE", json!({"link": [2, 0]})),
+            ("Shader", "SHADER", json!({"link": [3, 0]})),
+            ("Shader_001", "SHADER", json!({"link": [4, 0]})),
+        ];
+        let nodes = [
+            output(),
+            node("ShaderNodeMixShader", &mix, json!({})),
+            node("ShaderNodeLightPath", &[], json!({})),
+            background(json!([0.5, 0.25, 0.0, 1.0]), 2.0),
+            background(json!([0.0, 0.0, 1.0, 1.0]), 1.0),
+        ];
+        let (desc, warnings) = world(&nodes);
+        assert!(warnings.is_empty());
+        let [seen, lit] = &desc.lights[..] else { panic!("{:?}", desc.lights) };
+        assert_eq!((seen.kind.color(), lit.kind.color()), ([0.0, 0.0, 1.0], [1.0, 0.5, 0.0]));
+        let rays = |v: Visibility| [v.camera, v.diffuse, v.glossy, v.transmission];
+        assert_eq!(rays(seen.visibility), [true, false, false, false]);
+        assert_eq!(rays(lit.visibility), [false, true, true, true]);
+    }
+
+    #[test]
+    fn a_sky_is_a_graph_and_its_sun_stands_beside_it() {
+        let sky = json!({"sky_type": "MULTIPLE_SCATTERING", "sun_disc": true, "sun_elevation": 0.4, "sun_size": 0.01});
+        let nodes = [
+            output(),
+            background(json!({"link": [2, 0]}), 0.5),
+            node("ShaderNodeTexSky", &[("Vector", "VECTOR", json!([0.0, 0.0, 0.0]))], sky),
+        ];
+        let (desc, warnings) = world(&nodes);
+        assert!(warnings.is_empty());
+        assert_eq!(desc.lights[0].kind, LightKind::ShadedDome { shader: 0 });
+        let [sun] = &desc.dome_shaders[0].suns[..] else { panic!("{:?}", desc.dome_shaders) };
+        assert_eq!(sun.atmosphere.sun_size, Some(0.01));
+    }
+}

@@ -5,7 +5,7 @@ use crate::desc::graph::{Leaf, Op, Sky, Value};
 use crate::desc::{DomeShader, LightDesc};
 use crate::error::Warnings;
 use crate::light::Distant;
-use crate::math::{Rgb, Vec3};
+use crate::math::Rgb;
 use crate::texture::graph as texture;
 
 /// The lights that the suns of `shader` are.
@@ -37,7 +37,7 @@ pub fn prepare(shader: &DomeShader, light: &LightDesc, warnings: &mut Warnings) 
         let mut mended = Mended::default();
         let irradiance = mended.color("the sun's light", irradiance);
         if !irradiance.is_black() {
-            suns.push(Distant::new(Vec3::from(disk.direction), disk.diameter, irradiance));
+            suns.push(Distant::new(disk.direction, disk.diameter, irradiance));
         }
         mended.tell(light, irradiance.is_black(), warnings);
     }

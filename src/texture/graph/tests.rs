@@ -130,6 +130,7 @@ fn naive(graph: &Graph, id: ValueId, hit: &Plain, at: Beside) -> Value {
         Op::Procedural(texture, args) => {
             procedural::eval(texture, &args.iter().map(|id| value(*id)).collect::<Vec<_>>())
         }
+        Op::Sky { .. } => panic!("random graphs have no sky"),
         Op::Transform { quantity, from, to, value: id } => finite(hit.transform(*quantity, *from, *to, value(*id))),
         Op::Image { texture: 2, .. } => [0.5, 0.5, 0.5, 1.0],
         Op::Image { texture, uv } => {

@@ -33,34 +33,19 @@ pub fn world(flow: &mut Flow<'_, '_>) -> Vec<WorldPart> {
 /// What each kind of ray sees. Light sampling and rays that surfaces sample find the same: that a world is
 /// seen from a diffuse surface is a matter of the surface, not of how light was found.
 fn by_rays(flow: &mut Flow<'_, '_>, sum: ValueId) -> Vec<(ValueId, Seen)> {
+    use PathInfo as P;
     let needed = flow.graph.needed([sum]);
-    let asked: Vec<PathInfo> = flow
-        .graph
-        .ops()
-        .iter()
-        .zip(needed)
-        .filter_map(|(op, needed)| match op {
-            Op::Leaf(Leaf::Path(info)) if needed => Some(*info),
-            _ => None,
-        })
-        .collect();
+    let path = |(op, needed): (&Op, bool)| match op {
+        Op::Leaf(Leaf::Path(info)) if needed => Some(*info),
+        _ => None,
+    };
+    let asked: Vec<PathInfo> = flow.graph.ops().iter().zip(needed).filter_map(path).collect();
+    let exact = [P::IsCamera, P::IsShadow, P::IsDiffuse, P::IsGlossy, P::IsReflection, P::IsTransmission];
     if asked.is_empty() {
         return vec![(sum, Seen::ALL)];
     }
-    use PathInfo as P;
-    if asked.iter().any(|info| {
-        matches!(
-            info,
-            P::IsSingular
-                | P::Length
-                | P::Depth
-                | P::DiffuseDepth
-                | P::GlossyDepth
-                | P::TransmissionDepth
-                | P::TransparentDepth
-        )
-    }) {
-        flow.warn("the world goes by the length or depth of paths, or by perfect mirrors: taken as of the first bounce of rough surfaces");
+    if asked.iter().any(|info| !exact.contains(info)) {
+        flow.warn("the world goes by lengths or depths of paths, or by mirrors: taken as at the first, rough bounce");
     }
     let none = Seen { camera: false, diffuse: false, glossy: false, transmission: false };
     let kinds: [(Seen, &[PathInfo]); 4] = [
@@ -126,15 +111,16 @@ fn factored(flow: &Flow<'_, '_>, value: ValueId, factor: &mut [f64; 3]) -> Value
 /// at.
 fn equirectangular(flow: &Flow<'_, '_>, value: ValueId) -> Option<(u32, DMat3)> {
     let graph = &flow.graph;
-    // A color that alpha multiplies where nothing is transparent.
-    let image = |value: ValueId| match graph.op(value) {
-        Op::Image { texture, uv } => Some((*texture, *uv)),
-        _ => None,
+    // Its color may be multiplied by its alpha: pictures of surroundings are opaque.
+    let texel = match graph.op(value) {
+        Op::Apply(Function::Math(Math::Multiply), args) => match graph.op(args[1]) {
+            Op::Apply(Function::Swizzle([3, 3, 3, 3]), of) if of[0] == args[0] => args[0],
+            _ => return None,
+        },
+        _ => value,
     };
-    let (texture, uv) = image(value).or_else(|| match graph.op(value) {
-        Op::Apply(Function::Math(Math::Multiply), args) => image(args[0]),
-        _ => None,
-    })?;
+    let Op::Image { texture, uv } = graph.op(texel) else { return None };
+    let (texture, uv) = (*texture, *uv);
     let Op::Apply(Function::Affine(_), args) = graph.op(uv) else { return None };
     let Op::Apply(Function::Equirectangular, args) = graph.op(args[0]) else { return None };
     let direction = args[0];
