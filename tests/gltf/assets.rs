@@ -18,7 +18,8 @@ fn asset(path: &str, options: &ImportOptions) -> Option<SceneDesc> {
     let mut warnings = Warnings::new();
     let scene = scene(&folder.join("gltf").join(path), options, &mut warnings).unwrap();
     check(&scene).unwrap();
-    assert!(warnings.is_empty(), "{warnings:?}");
+    // What Blender's own exporter loses is told, and nothing else.
+    assert!(warnings.iter().all(|w| w.what.starts_with("was exported by Blender alone")), "{warnings:?}");
     Some(scene)
 }
 
