@@ -25,8 +25,8 @@ const KEPT: usize = 4;
 impl Sky {
     /// The sky of `desc`.
     pub fn new(desc: &desc::Sky) -> Self {
-        let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, sky)) = last.iter().find(|(known, _)| known == desc) {
+        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, sky)) = last().iter().find(|(known, _)| known == desc) {
             return sky.clone();
         }
         let made = match desc {
@@ -41,6 +41,7 @@ impl Sky {
             desc::Sky::Atmosphere(atmosphere) => Made::Atmosphere(of_texture(atmosphere).prepare()),
         };
         let sky = Self(Arc::new(made));
+        let mut last = last();
         last.truncate(KEPT - 1);
         last.insert(0, (*desc, sky.clone()));
         sky
