@@ -69,6 +69,31 @@ def copies(folder):
     stage.GetRootLayer().Save()
 
 
+def hairs(folder):
+    """20,000 hairs of six points on a ball, their tips thin, and 4,000 points, each with a colour of its own."""
+    random, count = np.random.default_rng(7), 20_000
+    stage = Usd.Stage.CreateNew(str(folder / "hairs.usdc"))
+    out = random.normal(size=(count, 3))
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    bend = 0.2 * random.normal(size=(count, 3))
+    steps = [out * (1 + 0.45 * t) + (bend - (0, 0.35, 0)) * t * t for t in np.linspace(0, 1, 6)]
+    points = np.stack(steps, 1) + 0.012 * random.normal(size=(count, 6, 3))
+    fur = UsdGeom.BasisCurves.Define(stage, "/World/Fur")
+    fur.CreateBasisAttr("catmullRom")
+    fur.CreateWrapAttr("pinned")
+    fur.CreateCurveVertexCountsAttr(Vt.IntArray(count, 6))
+    fur.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points.reshape(-1, 3).astype(np.float32)))
+    fur.CreateWidthsAttr(Vt.FloatArray.FromNumpy(np.tile(np.float32([8, 8, 7.5, 6.5, 5, 1]) / 1000, count)))
+    fur.SetWidthsInterpolation("vertex")
+    beads = UsdGeom.Points.Define(stage, "/World/Beads")
+    beads.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(random.uniform((-3, -1.5, -3), (3, -1.4, 3), (4000, 3)).astype(np.float32)))
+    beads.CreateWidthsAttr(Vt.FloatArray.FromNumpy(random.uniform(0.04, 0.1, 4000).astype(np.float32)))
+    for prim, size, interpolation in ((fur, count, "uniform"), (beads, 4000, "vertex")):
+        colors = random.uniform(0, 1, (size, 3)).astype(np.float32)
+        prim.CreateDisplayColorPrimvar(interpolation).Set(Vt.Vec3fArray.FromNumpy(colors))
+    stage.GetRootLayer().Save()
+
+
 def references(folder, instanceable=False):
     """5,000 references to an asset of 20 prims: 100,000 prims."""
     asset = folder / "asset.usda"
@@ -105,6 +130,9 @@ def by_openusd(path):
             attributes = [mesh.GetPointsAttr(), mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr()]
             for attribute in [*attributes, mesh.GetNormalsAttr(), prim.GetAttribute("primvars:st")]:
                 np.array(attribute.Get(), copy=True)
+        elif prim.IsA(UsdGeom.PointBased):
+            for name in ("points", "widths", "curveVertexCounts", "primvars:displayColor"):
+                np.array(prim.GetAttribute(name).Get(), copy=True)
 
 
 def seconds(run):
@@ -130,9 +158,10 @@ def main():
         folder = Path(name)
         million(folder)
         copies(folder)
+        hairs(folder)
         references(folder)
         references(folder, True)
-        for file in ("million.usdc", "copies.usdc", "references.usda", "instances.usda"):
+        for file in ("million.usdc", "copies.usdc", "hairs.usdc", "references.usda", "instances.usda"):
             path = folder / file
             rounds = []
             for _ in range(options.rounds):

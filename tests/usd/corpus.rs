@@ -6,9 +6,10 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use penumbra::desc::RoundsDesc;
 use penumbra::import::ImportOptions;
 
-use super::{at_frame, try_load};
+use super::{Loaded, at_frame, try_load};
 
 /// A file of the corpus.
 pub fn corpus() -> PathBuf {
@@ -42,6 +43,13 @@ fn the_rich_stage_is_the_same_in_all_its_forms() {
         assert_eq!(other.paths(), text.paths());
         assert_eq!(other.scene.materials.len(), text.scene.materials.len());
         assert_eq!(other.scene.lights.len(), text.scene.lights.len());
+        let rounds = |loaded: &Loaded| {
+            let of = |r: &RoundsDesc| (r.points.clone(), r.radii.clone(), r.strands.clone(), r.colors.clone());
+            loaded.scene.rounds.iter().map(of).collect::<Vec<_>>()
+        };
+        assert_eq!(rounds(other), rounds(&text));
     }
-    assert!(text.paths().len() >= 26 && text.scene.lights.len() >= 6, "{:?}", text.paths());
+    // Curves of four kinds, and points.
+    assert!(text.scene.rounds.len() >= 5, "{}", text.scene.rounds.len());
+    assert!(text.paths().len() >= 24 && text.scene.lights.len() >= 6, "{:?}", text.paths());
 }
