@@ -45,7 +45,7 @@ fn the_rich_stage_is_the_same_in_all_its_forms() {
         assert_eq!(other.scene.lights.len(), text.scene.lights.len());
         let rounds = |loaded: &Loaded| {
             let of = |r: &RoundsDesc| (r.points.clone(), r.radii.clone(), r.strands.clone(), r.colors.clone());
-            loaded.scene.rounds.iter().map(of).collect::<Vec<_>>()
+            loaded.scene.rounds.iter().map(|r| of(r)).collect::<Vec<_>>()
         };
         assert_eq!(rounds(other), rounds(&text));
     }

@@ -85,7 +85,7 @@ class Stamps(Exporter):
         size = [max(int(n * scale), 1) for n in (render.resolution_x, render.resolution_y)]
         return {
             "camera": camera.camera(evaluated, self._scene),
-            "render": camera.render(self._scene, size),
+            "render": camera.render(self._scene, size, self._context.view_layer),
             "active": obj == self._scene.camera,
         }
 

@@ -17,6 +17,23 @@ pub fn materials(
 ) {
     let place = desc.place.clone();
     desc.materials = document.materials.iter().map(|data| material(data, images, uv_sets, &place, warnings)).collect();
+    desc.materials.extend(default_material(document));
+}
+
+/// Index of the material of slots without one; `None` where the engine's own default is meant.
+pub fn default_index(document: &Document) -> Option<u32> {
+    default_material(document).map(|_| document.materials.len() as u32)
+}
+
+/// Up to Blender 4.5 what has no material is a matt 0.8; since 5.0 it is the Principled BSDF's default, which
+/// is the engine's, too.
+fn default_material(document: &Document) -> Option<MaterialDesc> {
+    let plain = ScalarInput::constant;
+    (1..5).contains(&document.version[0]).then(|| MaterialDesc {
+        roughness: plain(1.0),
+        specular: plain(0.0),
+        ..MaterialDesc::default()
+    })
 }
 
 fn material(

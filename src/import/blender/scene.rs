@@ -151,6 +151,7 @@ impl BlenderScene {
         let document = &self.document;
         let trees = || document.materials.iter().filter_map(|material| material.nodes.as_ref());
         let dress = Dress { uv_maps: self.uv_sets().names().to_vec(), tangents: trees().any(TreeData::needs_tangents) };
+        let default = material::default_index(document);
         let mut known: HashMap<u64, ShapeRef> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
         let mut lost = 0;
@@ -184,7 +185,10 @@ impl BlenderScene {
                 shape,
                 transform: affine_of_floats(&matrix),
                 motion: Vec::new(),
-                materials: data.materials.clone(),
+                materials: match (data.materials.as_slice(), default) {
+                    ([], Some(_)) => vec![default],
+                    (slots, _) => slots.iter().map(|slot| slot.or(default)).collect(),
+                },
                 object_index: data.pass_index,
                 color: None,
                 visibility: data.visibility.into(),
