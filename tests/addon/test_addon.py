@@ -47,7 +47,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
 
 @pytest.mark.parametrize(
     "name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "falloff_linear", "world_image", "mesh_light",
-             "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured",
+             "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured", "points",
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
              "sky_preetham", "holdout", "thin"]
 )
