@@ -21,15 +21,19 @@ class _Panel:
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
 
+    def _split(self):
+        """The layout, names to the left as Blender's own panels have them."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout
+
 
 class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_context = "render"
 
     def draw(self, context):
-        layout, own = self.layout, context.scene.penumbra
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, own = self._split(), context.scene.penumbra
         column = layout.column(align=True)
         column.prop(own, "spp", text="Samples")
         column.prop(own, "time", text="Time Limit")
@@ -44,9 +48,7 @@ class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        layout, own = self.layout, context.scene.penumbra
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, own = self._split(), context.scene.penumbra
         for name in ("sampler", "light_samples", "light_selection", "effects"):
             layout.prop(own, name)
 
@@ -56,9 +58,7 @@ class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        layout, own = self.layout, context.scene.penumbra
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, own = self._split(), context.scene.penumbra
         layout.prop(own, "integrator")
         layout.prop(own, "max_bounces")
 
@@ -68,9 +68,7 @@ class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        layout, scene = self.layout, context.scene
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, scene = self._split(), context.scene
         layout.prop(scene.penumbra, "ao_samples", text="Samples")
         if scene.world is not None:
             layout.prop(scene.world.light_settings, "distance")
@@ -81,9 +79,7 @@ class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        layout, scene = self.layout, context.scene
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, scene = self._split(), context.scene
         cycles = getattr(scene, "cycles", None)
         if cycles is not None:
             layout.prop(cycles, "film_exposure")
@@ -98,9 +94,7 @@ class PENUMBRA_PT_passes(_Panel, bpy.types.Panel):
     bl_context = "view_layer"
 
     def draw(self, context):
-        layout, layer = self.layout, context.view_layer
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, layer = self._split(), context.view_layer
         own = layer.penumbra
         for title, names in (
             ("Shadow and Occlusion", ("ambient_occlusion",)),

@@ -278,57 +278,39 @@ impl Default for MaterialDesc {
 impl MaterialDesc {
     /// Every texture that its inputs look up by themselves, in no order; those of the graph come on top.
     pub fn textures(&self) -> impl Iterator<Item = TextureRef> {
-        let color = |input: &ColorInput| input.texture;
-        let scalar = |input: &ScalarInput| input.texture.map(|(texture, _)| texture);
-        let normal = |input: Option<NormalInput>| input.and_then(|n| n.texture());
-        [
-            color(&self.base_color),
-            scalar(&self.alpha),
-            scalar(&self.metallic),
-            scalar(&self.roughness),
-            scalar(&self.specular),
-            color(&self.specular_color),
-            scalar(&self.transmission),
-            self.volume.as_ref().and_then(|v| scalar(&v.thickness)),
-            self.coat.as_ref().and_then(|c| scalar(&c.weight)),
-            self.coat.as_ref().and_then(|c| scalar(&c.roughness)),
-            self.coat.as_ref().and_then(|c| normal(c.normal)),
-            self.sheen.as_ref().and_then(|s| color(&s.color)),
-            self.sheen.as_ref().and_then(|s| scalar(&s.roughness)),
-            self.iridescence.as_ref().and_then(|i| scalar(&i.weight)),
-            self.iridescence.as_ref().and_then(|i| i.thickness_texture.map(|(texture, _)| texture)),
-            self.anisotropy.as_ref().and_then(|a| a.texture),
-            color(&self.emission),
-            normal(self.normal),
-            self.occlusion.as_ref().and_then(scalar),
-        ]
-        .into_iter()
-        .flatten()
+        let thickness = self.iridescence.as_ref().and_then(|i| i.thickness_texture.map(|(texture, _)| texture));
+        let anisotropy = self.anisotropy.as_ref().and_then(|a| a.texture);
+        self.inputs().filter_map(|(texture, _)| texture).chain(thickness).chain(anisotropy)
     }
 
     /// Every value of the graph that an input names, in no order.
     pub fn graph_values(&self) -> impl Iterator<Item = ValueId> {
-        let color = |input: &ColorInput| input.graph;
-        let scalar = |input: &ScalarInput| input.graph;
-        let normal = |input: Option<NormalInput>| input.and_then(|n| n.value());
+        self.inputs().filter_map(|(_, value)| value)
+    }
+
+    /// What varies each input, in no order: a texture, a value of the graph.
+    fn inputs(&self) -> impl Iterator<Item = (Option<TextureRef>, Option<ValueId>)> {
+        let color = |input: &ColorInput| (input.texture, input.graph);
+        let scalar = |input: &ScalarInput| (input.texture.map(|(texture, _)| texture), input.graph);
+        let normal = |input: NormalInput| (input.texture(), input.value());
         [
-            color(&self.base_color),
-            scalar(&self.alpha),
-            scalar(&self.metallic),
-            scalar(&self.roughness),
-            scalar(&self.specular),
-            color(&self.specular_color),
-            scalar(&self.transmission),
-            self.volume.as_ref().and_then(|v| scalar(&v.thickness)),
-            self.coat.as_ref().and_then(|c| scalar(&c.weight)),
-            self.coat.as_ref().and_then(|c| scalar(&c.roughness)),
-            self.coat.as_ref().and_then(|c| normal(c.normal)),
-            self.sheen.as_ref().and_then(|s| color(&s.color)),
-            self.sheen.as_ref().and_then(|s| scalar(&s.roughness)),
-            self.iridescence.as_ref().and_then(|i| scalar(&i.weight)),
-            color(&self.emission),
-            normal(self.normal),
-            self.occlusion.as_ref().and_then(scalar),
+            Some(color(&self.base_color)),
+            Some(scalar(&self.alpha)),
+            Some(scalar(&self.metallic)),
+            Some(scalar(&self.roughness)),
+            Some(scalar(&self.specular)),
+            Some(color(&self.specular_color)),
+            Some(scalar(&self.transmission)),
+            self.volume.as_ref().map(|v| scalar(&v.thickness)),
+            self.coat.as_ref().map(|c| scalar(&c.weight)),
+            self.coat.as_ref().map(|c| scalar(&c.roughness)),
+            self.coat.as_ref().and_then(|c| c.normal).map(normal),
+            self.sheen.as_ref().map(|s| color(&s.color)),
+            self.sheen.as_ref().map(|s| scalar(&s.roughness)),
+            self.iridescence.as_ref().map(|i| scalar(&i.weight)),
+            Some(color(&self.emission)),
+            self.normal.map(normal),
+            self.occlusion.as_ref().map(scalar),
         ]
         .into_iter()
         .flatten()

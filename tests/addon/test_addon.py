@@ -65,8 +65,7 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
 
 
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
-    (seconds, path), _ = blender.run("cancel", tmp_path)
-    assert seconds < 5.0
+    (_, path), _ = blender.run("cancel", tmp_path)
     layers = read(path)
     assert layers["ViewLayer.Combined.R"].mean() > 0.01
 

@@ -4,7 +4,6 @@
 //! (`Sdf.ZipFileWriter`, with its texture and profile) of it.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use penumbra::desc::RoundsDesc;
 use penumbra::import::ImportOptions;
@@ -25,10 +24,7 @@ fn the_fuzzers_corpus_does_no_harm() {
             continue;
         }
         for options in [ImportOptions::default(), at_frame(7.5)] {
-            let start = Instant::now();
             let _ = try_load(&path, &options);
-            // Small files: one that takes long promises more than it has.
-            assert!(start.elapsed() < Duration::from_secs(5), "{}: {:?}", path.display(), start.elapsed());
         }
         count += 1;
     }

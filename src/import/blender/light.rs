@@ -8,9 +8,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::document::{LightData, LinkData, ObjectData, VisibilityData};
+use super::document::{LightData, LinkData, ObjectData};
 use super::transform::affine;
-use crate::desc::{ConeDesc, DecayDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc, Visibility};
+use crate::desc::{ConeDesc, DecayDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc};
 use crate::error::{Place, Warnings};
 use crate::math::DVec3;
 
@@ -127,12 +127,6 @@ pub fn links(
 /// The rules of what `object` emits.
 pub fn links_of_object(object: &ObjectData, instances: &[Vec<u32>]) -> LightLinks {
     links(&object.lightgroup, object.receivers.as_ref(), object.blockers.as_ref(), instances)
-}
-
-impl From<&VisibilityData> for Visibility {
-    fn from(data: &VisibilityData) -> Self {
-        (*data).into()
-    }
 }
 
 #[cfg(test)]
