@@ -61,7 +61,7 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
         expected, found = np.dstack(theirs), np.dstack([ours[n] for n in names])
         # The noise of the two means: that of differences between pixels, which edges make no smaller.
         noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
-        assert abs(found.mean() - expected.mean()) <= 0.004 * expected.mean() + 4.0 * noise, (name, layer)
+        assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise, (name, layer)
 
 
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
