@@ -5,27 +5,49 @@ mod chi2;
 
 use std::f64::consts::{PI, TAU};
 
-use penumbra::bsdf::{Bsdf, BsdfSample, Lobe, Surface, f0_from_eta, fresnel_dielectric};
-use penumbra::math::{Rgb, Vec3};
+use penumbra::bsdf::{
+    Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Lobe, Microfacets, Sheen, Stretched, Surface, ThinFilm,
+    f0_from_eta, fresnel_dielectric,
+};
+use penumbra::math::{Frame, Rgb, Vec3};
 use penumbra::sampling::{Dimension, Pattern, Sampler};
 
 const WHITE: Surface = Surface {
     base_color: Rgb::WHITE,
     metallic: 0.0,
+    metal_edge: Rgb::WHITE,
+    diffuse_roughness: 0.0,
     roughness: 0.5,
+    stretched: None,
+    multiscatter: true,
     ior: 1.5,
     specular: 1.0,
     specular_color: Rgb::WHITE,
+    specular_level: 1.0,
     transmission: 0.0,
     thin: false,
+    translucent: 0.0,
+    translucent_color: Rgb::WHITE,
+    coat: None,
+    sheen: None,
+    film: None,
 };
+const COAT: Coat = Coat { weight: 1.0, roughness: 0.1, ior: 1.5, tint: Rgb::WHITE, frame: None };
+const FILM: ThinFilm = ThinFilm { thickness: 400.0, ior: 1.8, weight: 1.0 };
+const FACETS: Microfacets = Microfacets { roughness: 0.3, stretched: None, multiscatter: true };
+/// Turned by 30 degrees.
+const TURNED: Frame = Frame { s: Vec3::new(0.866_025_4, 0.5, 0.0), t: Vec3::new(-0.5, 0.866_025_4, 0.0), n: Vec3::Z };
+/// Tilted by 20 degrees.
+const TILTED: Frame =
+    Frame { s: Vec3::new(0.939_692_6, 0.0, -0.342_020_1), t: Vec3::Y, n: Vec3::new(0.342_020_1, 0.0, 0.939_692_6) };
+const STRETCHED: Stretched = Stretched { alpha: [0.5, 0.1], frame: TURNED };
 const METAL: Surface = Surface { metallic: 1.0, ..WHITE };
 const GLASS: Surface = Surface { transmission: 1.0, ..WHITE };
 const TEAL: Rgb = Rgb::new(0.1, 0.6, 0.5);
 
 struct Case {
     name: &'static str,
-    surface: Surface,
+    closure: Closure,
     /// True where nothing is absorbed: the white furnace must give 1.
     lossless: bool,
     /// False for a view from within.
@@ -33,11 +55,15 @@ struct Case {
 }
 
 const fn outside(name: &'static str, surface: Surface, lossless: bool) -> Case {
-    Case { name, surface, lossless, entering: true }
+    Case { name, closure: Closure::Layered(surface), lossless, entering: true }
 }
 
 const fn inside(name: &'static str, surface: Surface, lossless: bool) -> Case {
-    Case { name, surface, lossless, entering: false }
+    Case { name, closure: Closure::Layered(surface), lossless, entering: false }
+}
+
+const fn single(name: &'static str, closure: Closure, lossless: bool) -> Case {
+    Case { name, closure, lossless, entering: true }
 }
 
 const CASES: &[Case] = &[
@@ -76,17 +102,93 @@ const CASES: &[Case] = &[
     outside("all layers", Surface { metallic: 0.3, transmission: 0.5, base_color: TEAL, ..WHITE }, false),
     inside("all layers, inside", Surface { metallic: 0.3, transmission: 0.5, roughness: 0.3, ..WHITE }, true),
     outside("all layers, smooth", Surface { metallic: 0.3, transmission: 0.5, roughness: 0.0, ..WHITE }, true),
+    outside("plastic, rough beneath", Surface { diffuse_roughness: 0.7, ..WHITE }, true),
+    outside("plastic, reflects more", Surface { specular_level: 2.0, ..WHITE }, true),
+    outside("plastic, stretched", Surface { stretched: Some(STRETCHED), ..WHITE }, false),
+    outside("plastic, film", Surface { film: Some(FILM), base_color: TEAL, ..WHITE }, false),
+    outside("metal, tinted edge", Surface { metal_edge: TEAL, ..METAL }, false),
+    outside("metal, stretched", Surface { stretched: Some(STRETCHED), base_color: TEAL, ..METAL }, false),
+    outside("metal, film", Surface { film: Some(FILM), base_color: TEAL, ..METAL }, false),
+    outside("metal, single scattering", Surface { multiscatter: false, roughness: 1.0, ..METAL }, false),
+    outside("glass, film", Surface { film: Some(FILM), ..GLASS }, false),
+    inside("glass, film, inside", Surface { film: Some(FILM), ..GLASS }, false),
+    outside("glass, smooth, film", Surface { film: Some(FILM), roughness: 0.0, ..GLASS }, true),
+    outside("paper", Surface { translucent: 0.5, ior: 1.0, ..WHITE }, true),
+    outside("coat", Surface { coat: Some(COAT), ..WHITE }, true),
+    outside("coat, smooth", Surface { coat: Some(Coat { roughness: 0.0, ..COAT }), ..WHITE }, true),
+    outside("coat, tinted", Surface { coat: Some(Coat { tint: TEAL, ..COAT }), ..WHITE }, false),
+    outside("coat, half", Surface { coat: Some(Coat { weight: 0.5, ..COAT }), ..WHITE }, true),
+    outside("coat, own normal", Surface { coat: Some(Coat { frame: Some(TILTED), ..COAT }), ..METAL }, false),
+    outside("sheen", Surface { sheen: Some(Sheen { color: Rgb::WHITE, roughness: 0.5 }), ..WHITE }, true),
+    outside("sheen, matt", Surface { sheen: Some(Sheen { color: TEAL, roughness: 1.0 }), ..WHITE }, false),
+    single("rough diffuse", Closure::Diffuse { color: Rgb::WHITE, roughness: 1.0 }, true),
+    single("rough diffuse, teal", Closure::Diffuse { color: TEAL, roughness: 0.5 }, false),
+    single("translucent", Closure::Translucent { color: Rgb::WHITE }, true),
+    single("glossy", Closure::Glossy { color: Rgb::WHITE, facets: FACETS }, true),
+    single("glossy, smooth", Closure::Glossy { color: TEAL, facets: Microfacets { roughness: 0.0, ..FACETS } }, false),
+    single(
+        "glossy, stretched",
+        Closure::Glossy { color: Rgb::WHITE, facets: Microfacets { stretched: Some(STRETCHED), ..FACETS } },
+        false,
+    ),
+    single("gold", Closure::Conductor { index: GOLD, facets: FACETS, film: None }, false),
+    single("gold, film", Closure::Conductor { index: GOLD, facets: FACETS, film: Some(FILM) }, false),
+    single("metal of two values", Closure::Metal { base: TEAL, edge: TEAL, facets: FACETS, film: None }, false),
+    single("glass node", Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: FACETS, film: None }, true),
+    single("refraction", Closure::Refraction { color: Rgb::WHITE, ior: 1.5, facets: FACETS }, false),
+    single("sheen node", Closure::Sheen(Sheen { color: Rgb::WHITE, roughness: 0.3 }), false),
+    single("toon", Closure::Toon { color: Rgb::WHITE, size: [0.5, 0.2], glossy: false }, false),
+    single("toon, glossy", Closure::Toon { color: Rgb::WHITE, size: [0.2, 0.0], glossy: true }, false),
 ];
 
+const GOLD: Conductor = Conductor { eta: Rgb::new(0.183, 0.422, 1.373), k: Rgb::new(3.424, 2.346, 1.770) };
+
 impl Case {
-    fn bsdf(&self) -> Bsdf {
-        Bsdf::new(&self.surface, self.entering)
+    fn bsdf(&self, wo: Vec3) -> Bsdf {
+        seen(&self.closure, wo, self.entering)
+    }
+
+    fn is_stretched(&self) -> bool {
+        match &self.closure {
+            Closure::Layered(surface) => surface.stretched.is_some(),
+            Closure::Glossy { facets, .. } => facets.stretched.is_some(),
+            _ => false,
+        }
+    }
+
+    /// True where there are no tables for its albedo, only estimates.
+    fn is_estimated(&self) -> bool {
+        let film_or_stretched =
+            |film: &Option<ThinFilm>, facets: &Microfacets| film.is_some() || facets.stretched.is_some();
+        match &self.closure {
+            Closure::Layered(surface) => surface.film.is_some() || surface.stretched.is_some(),
+            Closure::Metal { film, facets, .. } | Closure::Conductor { film, facets, .. } => {
+                film_or_stretched(film, facets)
+            }
+            Closure::Glossy { facets, .. } => facets.stretched.is_some(),
+            Closure::Toon { .. } => true,
+            _ => false,
+        }
+    }
+
+    fn layered(&self) -> Option<Surface> {
+        match self.closure {
+            Closure::Layered(surface) => Some(surface),
+            _ => None,
+        }
     }
 
     /// True where light comes from the denser side of glass.
     fn has_critical_angle(&self) -> bool {
-        self.surface.transmission > 0.0 && (!self.entering || self.surface.ior < 1.0)
+        self.layered().is_some_and(|s| s.transmission > 0.0 && (!self.entering || s.ior < 1.0))
     }
+}
+
+/// `closure` alone, seen from `wo`.
+fn seen(closure: &Closure, wo: Vec3, entering: bool) -> Bsdf {
+    let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+    builder.add(Rgb::WHITE, closure);
+    builder.finish()
 }
 
 /// A view at an angle to the normal, on either side of it.
@@ -95,18 +197,18 @@ fn view(degrees: f32, azimuth: f32, above: bool) -> Vec3 {
     Vec3::new(sin * azimuth.cos(), sin * azimuth.sin(), if above { cos } else { -cos })
 }
 
-fn samples(bsdf: &Bsdf, wo: Vec3, pattern: Pattern, n: u64) -> impl Iterator<Item = Option<BsdfSample>> {
+fn samples(bsdf: &Bsdf, pattern: Pattern, n: u64) -> impl Iterator<Item = Option<BsdfSample>> {
     let sampler = Sampler::new(pattern, 11);
     (0..n).map(move |i| {
         let s = sampler.for_sample(0, 0, i);
-        bsdf.sample(wo, s.get_1d(Dimension::FREE), s.get_2d(Dimension::LENS))
+        bsdf.sample(s.get_1d(Dimension::FREE), s.get_2d(Dimension::LENS))
     })
 }
 
 /// What a white surrounding sees: the mean of `n` weights, per class.
-fn furnace(bsdf: &Bsdf, wo: Vec3, n: u64) -> [Rgb; 3] {
+fn furnace(bsdf: &Bsdf, n: u64) -> [Rgb; 3] {
     let mut sums = [[0.0_f64; 3]; 3];
-    for s in samples(bsdf, wo, Pattern::Sobol, n).flatten() {
+    for s in samples(bsdf, Pattern::Sobol, n).flatten() {
         for (sum, part) in sums.iter_mut().zip([s.weight.diffuse, s.weight.glossy, s.weight.transmission]) {
             for (sum, channel) in sum.iter_mut().zip(part.to_array()) {
                 *sum += f64::from(channel);
@@ -123,14 +225,17 @@ fn total(parts: [Rgb; 3]) -> Rgb {
 #[test]
 fn samples_agree_with_eval() {
     for case in CASES {
-        let bsdf = case.bsdf();
         for (degrees, above) in [(0.0, true), (30.0, true), (70.0, false), (89.0, true)] {
             let wo = view(degrees, 0.7, above);
-            for s in samples(&bsdf, wo, Pattern::Independent, 2000).flatten() {
+            let bsdf = case.bsdf(wo);
+            for s in samples(&bsdf, Pattern::Independent, 2000).flatten() {
                 let name = case.name;
                 assert!((s.wi.length() - 1.0).abs() < 1e-5 && s.pdf > 0.0, "{name}: {s:?}");
-                assert_eq!(s.lobe == Lobe::Transmission, s.wi.z * wo.z < 0.0, "{name}: {s:?}");
-                let eval = bsdf.eval(wo, s.wi);
+                assert!(
+                    s.lobe == Lobe::Diffuse || (s.lobe == Lobe::Transmission) == (s.wi.z * wo.z < 0.0),
+                    "{name}: {s:?}"
+                );
+                let eval = bsdf.eval(s.wi);
                 if s.delta {
                     assert!(s.pdf <= 1.0 + 1e-6);
                 } else {
@@ -147,16 +252,17 @@ fn samples_agree_with_eval() {
                 if bsdf.is_delta_only() {
                     assert!(s.delta && eval.pdf == 0.0 && eval.f_cos.sum().is_black());
                 }
-                let crosses = s.lobe == Lobe::Transmission && !case.surface.thin && case.surface.ior != 1.0;
-                let eta = if case.entering { case.surface.ior } else { 1.0 / case.surface.ior };
+                let Some(surface) = case.layered() else { continue };
+                let crosses = s.lobe == Lobe::Transmission && !surface.thin && surface.ior != 1.0;
+                let eta = if case.entering { surface.ior } else { 1.0 / surface.ior };
                 assert_eq!(s.eta, if crosses { eta } else { 1.0 }, "{name}");
             }
         }
     }
 }
 
-/// Counts of sampled directions against the density, and counts of deltas and of failures against what
-/// the density leaves.
+/// Counts of sampled directions against the density, and those of deltas and failures together against what
+/// the density leaves; that each delta has its probability is held by the furnace per class.
 #[test]
 fn directions_follow_the_density() {
     let views = [(5.0, true), (60.0, true), (80.0, false)];
@@ -169,36 +275,32 @@ fn directions_follow_the_density() {
         Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
     };
     for case in CASES {
-        let bsdf = case.bsdf();
         for (degrees, above) in views {
             let wo = view(degrees, 0.7, above);
-            let density = |x, y| f64::from(bsdf.eval(wo, direction(x, y)).pdf) * 4.0 * PI;
+            let bsdf = case.bsdf(wo);
+            let density = |x, y| f64::from(bsdf.eval(direction(x, y)).pdf) * 4.0 * PI;
             let mass = grid.integrals(&density, 2e-6);
             let scattered: f64 = mass.iter().sum();
             assert!(scattered < 1.0 + 2e-3, "{} {degrees}: density integrates to {scattered}", case.name);
 
             let mut observed = vec![0.0; mass.len()];
-            let (mut deltas, mut none) = (0.0, 0.0);
-            let mut p_delta = [0.0; 2];
-            for s in samples(&bsdf, wo, Pattern::Independent, n) {
+            // Directions that the density doesn't know: deltas and failures.
+            let mut others = 0.0;
+            for s in samples(&bsdf, Pattern::Independent, n) {
                 match s {
-                    Some(s) if s.delta => {
-                        deltas += 1.0;
-                        p_delta[usize::from(s.lobe == Lobe::Transmission)] = f64::from(s.pdf);
-                    }
+                    Some(s) if s.delta => others += 1.0,
                     Some(s) => {
                         let azimuth = f64::from(s.wi.y).atan2(f64::from(s.wi.x)).rem_euclid(TAU) / TAU;
                         observed[grid.cell([0.5 + 0.5 * f64::from(s.wi.z), azimuth])] += 1.0;
                     }
-                    None => none += 1.0,
+                    None => others += 1.0,
                 }
             }
-            let p_delta: f64 = p_delta.iter().sum();
             let mut expected: Vec<f64> = mass.iter().map(|m| m * n as f64).collect();
-            observed.extend([deltas, none]);
-            expected.extend([p_delta * n as f64, (1.0 - scattered - p_delta).max(0.0) * n as f64]);
+            observed.push(others);
+            expected.push((1.0 - scattered).max(0.0) * n as f64);
             chi2::check(&observed, &expected, CASES.len() * views.len())
-                .unwrap_or_else(|e| panic!("{} {degrees}: {e}; density {scattered}, none {none}", case.name));
+                .unwrap_or_else(|e| panic!("{} {degrees}: {e}; density {scattered}, others {others}", case.name));
         }
     }
 }
@@ -207,25 +309,28 @@ fn directions_follow_the_density() {
 fn energy_is_kept_and_never_made() {
     for case in CASES {
         // Once more with a lobe so narrow that the tables change fastest.
-        let narrow = Bsdf::new(&Surface { roughness: 0.03, ..case.surface }, case.entering);
-        for bsdf in [case.bsdf(), narrow] {
+        let narrow = case.layered().map(|surface| Closure::Layered(Surface { roughness: 0.03, ..surface }));
+        for closure in [Some(case.closure), narrow].into_iter().flatten() {
             for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
                 for above in [true, false] {
-                    check_energy(case, &bsdf, view(degrees, 0.3, above), degrees);
+                    check_energy(case, &seen(&closure, view(degrees, 0.3, above), case.entering), degrees);
                 }
             }
         }
     }
 }
 
-fn check_energy(case: &Case, bsdf: &Bsdf, wo: Vec3, degrees: f32) {
+fn check_energy(case: &Case, bsdf: &Bsdf, degrees: f32) {
     // The tables are less exact where the view grazes, and where there is a critical angle.
     let tolerance = match degrees {
+        // Round microfacets stand for stretched ones.
+        _ if case.is_stretched() => 3.5e-2,
         86.0.. => 2e-2,
+        _ if case.has_critical_angle() && case.is_estimated() => 1.5e-2,
         _ if case.has_critical_angle() => 1e-2,
         _ => 5e-3,
     };
-    for c in total(furnace(bsdf, wo, 1 << 14)).to_array() {
+    for c in total(furnace(bsdf, 1 << 14)).to_array() {
         assert!(c <= 1.0 + tolerance, "{} {degrees}: {c}", case.name);
         assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
     }
@@ -235,20 +340,26 @@ fn check_energy(case: &Case, bsdf: &Bsdf, wo: Vec3, degrees: f32) {
 #[test]
 fn albedo_is_the_furnace_per_class() {
     for case in CASES {
-        let bsdf = case.bsdf();
         for degrees in [0.0, 45.0, 60.0, 75.0, 85.0] {
-            let wo = view(degrees, 0.3, true);
-            let albedo = bsdf.albedo(wo);
-            let parts = furnace(&bsdf, wo, 1 << 14);
+            let bsdf = case.bsdf(view(degrees, 0.3, true));
+            let albedo = bsdf.albedo();
+            let parts = furnace(&bsdf, 1 << 14);
             // A critical angle is a step that the tables smear between reflection and passage.
             for (seen, told) in parts.into_iter().zip([albedo.diffuse, albedo.glossy, albedo.transmission]) {
                 let d = seen - told;
                 let tolerance = if case.has_critical_angle() { 0.3 } else { 0.012 };
-                assert!(d.to_array().iter().all(|d| d.abs() < tolerance), "{} {degrees}: {seen:?} {told:?}", case.name);
                 assert!(seen.is_black() || told.max_component() > 0.0, "{} {degrees}", case.name);
+                if case.is_estimated() {
+                    continue;
+                }
+                assert!(d.to_array().iter().all(|d| d.abs() < tolerance), "{} {degrees}: {seen:?} {told:?}", case.name);
             }
             let d = total(parts) - albedo.sum();
-            assert!(d.to_array().iter().all(|d| d.abs() < 0.02), "{} {degrees}: {parts:?} {albedo:?}", case.name);
+            assert!(
+                case.is_estimated() || d.to_array().iter().all(|d| d.abs() < 0.02),
+                "{} {degrees}: {parts:?} {albedo:?}",
+                case.name
+            );
         }
     }
 }
@@ -281,9 +392,8 @@ fn furnace_of_cycles() {
         ),
     ];
     for (name, surface, expected) in table {
-        let bsdf = Bsdf::new(surface, true);
         for (degrees, expected) in [0.0, 45.0, 60.0, 75.0, 85.0].into_iter().zip(expected) {
-            let seen = total(furnace(&bsdf, view(degrees, 0.0, true), 1 << 17)).g;
+            let seen = total(furnace(&Bsdf::new(surface, view(degrees, 0.0, true), true), 1 << 17)).g;
             println!("{name:20} {degrees:4} {seen:.4} {expected:.4}");
             // Cycles itself strays from 1 by as much at 85 degrees, where white plastic is exact here.
             assert!((seen / expected - 1.0).abs() < 0.0105, "{name}, {degrees}: {seen} {expected}");
@@ -320,7 +430,7 @@ fn color_passes_of_cycles() {
         ),
     ];
     for (name, surface, degrees, [diffuse, glossy, transmission]) in table {
-        let albedo = Bsdf::new(surface, true).albedo(view(*degrees, 0.0, true));
+        let albedo = Bsdf::new(surface, view(*degrees, 0.0, true), true).albedo();
         for (ours, theirs) in [(albedo.diffuse, diffuse), (albedo.glossy, glossy), (albedo.transmission, transmission)]
         {
             println!("{name:15} {degrees:4} {ours:.4?} {theirs:.4?}");
@@ -334,9 +444,9 @@ fn color_passes_of_cycles() {
 
 #[test]
 fn lambert_is_reciprocal() {
-    let bsdf = Bsdf::new(&Surface { ior: 1.0, ..WHITE }, true);
     let (a, b) = (view(20.0, 0.1, true), view(70.0, 2.0, true));
-    let f = |wo, wi: Vec3| bsdf.eval(wo, wi).f_cos.sum().g / wi.z;
+    let surface = Surface { ior: 1.0, ..WHITE };
+    let f = |wo, wi: Vec3| Bsdf::new(&surface, wo, true).eval(wi).f_cos.sum().g / wi.z;
     assert!((f(a, b) / f(b, a) - 1.0).abs() < 1e-6);
     assert!((f(a, b) - 1.0 / std::f32::consts::PI).abs() < 1e-6);
 }
@@ -362,17 +472,17 @@ fn extremes_stay_finite() {
         }
     }
     let black = Surface { base_color: Rgb::BLACK, specular: 0.0, ..WHITE };
-    assert!(Bsdf::new(&black, true).sample(Vec3::Z, 0.5, [0.5, 0.5]).is_none());
+    assert!(Bsdf::new(&black, Vec3::Z, true).sample(0.5, [0.5, 0.5]).is_none());
 }
 
 fn check_finite(surface: &Surface, entering: bool, directions: &[Vec3], us: &[[f32; 2]]) {
-    let bsdf = Bsdf::new(surface, entering);
     for &wo in directions {
-        let albedo = bsdf.albedo(wo);
+        let bsdf = Bsdf::new(surface, wo, entering);
+        let albedo = bsdf.albedo();
         assert!(albedo.is_finite() && albedo.sum().max_component() < 1.05, "{surface:?} {wo}: {albedo:?}");
         for &u in us {
             for uc in [0.0, 0.2, 0.5, 0.9, 1.0 - 2.0_f32.powi(-24)] {
-                let Some(s) = bsdf.sample(wo, uc, u) else { continue };
+                let Some(s) = bsdf.sample(uc, u) else { continue };
                 let good = s.weight.is_finite() && s.pdf.is_finite() && s.pdf > 0.0 && s.wi.is_finite();
                 let color = s.weight.sum().to_array();
                 assert!(good && color.iter().all(|&c| c >= 0.0), "{surface:?} {wo} {uc} {u:?}: {s:?}");
@@ -380,7 +490,7 @@ fn check_finite(surface: &Surface, entering: bool, directions: &[Vec3], us: &[[f
         }
         for &wi in directions {
             for wi in [wi, -wi, Vec3::new(-wo.x, -wo.y, wo.z), -wo] {
-                let e = bsdf.eval(wo, wi);
+                let e = bsdf.eval(wi);
                 assert!(e.f_cos.is_finite() && e.pdf.is_finite() && e.pdf >= 0.0, "{surface:?} {wo} {wi}: {e:?}");
             }
         }
@@ -391,10 +501,10 @@ fn check_finite(surface: &Surface, entering: bool, directions: &[Vec3], us: &[[f
 fn smooth_glass_obeys_fresnel_and_snell() {
     for (entering, degrees) in [(true, 0.0), (true, 60.0), (true, 89.0), (false, 30.0), (false, 41.0), (false, 60.0)] {
         let eta: f32 = if entering { 1.5 } else { 1.0 / 1.5 };
-        let bsdf = Bsdf::new(&Surface { roughness: 0.0, ..GLASS }, entering);
         let wo = view(degrees, 0.0, true);
+        let bsdf = Bsdf::new(&Surface { roughness: 0.0, ..GLASS }, wo, entering);
         let f = fresnel_dielectric(wo.z, eta);
-        for s in samples(&bsdf, wo, Pattern::Sobol, 64).flatten() {
+        for s in samples(&bsdf, Pattern::Sobol, 64).flatten() {
             assert!(s.delta && (s.weight.sum().g - 1.0).abs() < 1e-5);
             if s.lobe == Lobe::Glossy {
                 assert!((s.pdf - f).abs() < 1e-5 && (s.wi - Vec3::new(-wo.x, -wo.y, wo.z)).length() < 1e-6);
@@ -415,7 +525,7 @@ fn polish_meets_the_mirror() {
     for surface in [METAL, GLASS, Surface { base_color: TEAL, ..WHITE }] {
         for degrees in [0.0, 50.0, 80.0] {
             let wo = view(degrees, 0.4, true);
-            let seen = |roughness| total(furnace(&Bsdf::new(&Surface { roughness, ..surface }, true), wo, 1 << 14));
+            let seen = |roughness| total(furnace(&Bsdf::new(&Surface { roughness, ..surface }, wo, true), 1 << 14));
             let d = seen(0.0099) - seen(0.0101);
             assert!(d.to_array().iter().all(|d| d.abs() < 2e-3), "{surface:?} {degrees}: {d:?}");
         }

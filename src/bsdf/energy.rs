@@ -4,7 +4,8 @@
 //! With w = G2/G1 of a visible normal, averaged over the normals that `wo` sees, and s going from 0
 //! at normal incidence to 1 at grazing as Fresnel's reflectance does (`Dielectric::blend`):
 //!
-//! E = ⟨w⟩ over reflections, C = ⟨w (1 − cos)⁵⟩, S = ⟨w s⟩; W = ⟨w⟩ over refractions, V = ⟨w s⟩.
+//! E = ⟨w⟩ over reflections, C = ⟨w (1 − cos)⁵⟩, D = ⟨w cos (1 − cos)⁶⟩, S = ⟨w s⟩; W = ⟨w⟩ over
+//! refractions, V = ⟨w s⟩.
 //!
 //! Albedos are linear in these for any tint.
 //!
@@ -28,8 +29,12 @@ const ETA_NODES: usize = 20;
 const LAST_ETA: f32 = 0.447_213_6 * 1.9;
 
 /// First E and C by roughness and angle, then the averages of E by roughness, then S by side
-/// (indices above 1 first), index, roughness and angle, and W and V in the same order.
+/// (indices above 1 first), index, roughness and angle, W and V in the same order, and D by roughness and
+/// angle, times [`EDGE_SCALE`].
 static TABLES: &[u8; 2 * VALUES] = include_bytes!("energy.bin");
+
+/// D is small.
+const EDGE_SCALE: f32 = 16.0;
 
 /// What rounding takes for 0 may be this large.
 pub(super) const LEAST: f32 = 1e-4;
@@ -38,7 +43,8 @@ const SLICE: usize = COS_NODES * ROUGHNESS_NODES;
 const AVERAGES: usize = 2 * SLICE;
 const BLENDS: usize = AVERAGES + ROUGHNESS_NODES;
 const REFRACTED: usize = BLENDS + 2 * ETA_NODES * SLICE;
-const VALUES: usize = REFRACTED + 2 * 2 * ETA_NODES * SLICE;
+const EDGES: usize = REFRACTED + 2 * 2 * ETA_NODES * SLICE;
+const VALUES: usize = EDGES + SLICE;
 
 /// Averages that don't depend on the index of refraction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,6 +53,8 @@ pub(super) struct Plain {
     pub reflected: f32,
     /// C.
     pub reflected_schlick: f32,
+    /// D.
+    pub reflected_edge: f32,
 }
 
 /// Averages for an index of refraction.
@@ -113,7 +121,8 @@ impl EtaPlace {
 impl Energy {
     pub fn plain(&self) -> Plain {
         let [reflected, reflected_schlick] = self.in_slice(0);
-        Plain { reflected, reflected_schlick }
+        let [edge] = self.in_slice(EDGES);
+        Plain { reflected, reflected_schlick, reflected_edge: edge * (1.0 / EDGE_SCALE) }
     }
 
     /// S alone. It doesn't become 0, so that what has a value has a chance to be drawn.
@@ -211,14 +220,15 @@ mod tests {
     #[test]
     #[ignore = "writes src/bsdf/energy.bin"]
     fn write_tables() {
-        let (mut plain, mut averages) = (Vec::new(), Vec::new());
+        let (mut plain, mut averages, mut edges) = (Vec::new(), Vec::new(), Vec::new());
         let (mut blends, mut refracted) = (vec![0.0; 2 * ETA_NODES * SLICE], vec![0.0; 4 * ETA_NODES * SLICE]);
         for j in 0..ROUGHNESS_NODES {
             let mut row = Vec::new();
             for i in 0..COS_NODES {
                 let seen = Seen::new(alpha_node(j), cos_node(i));
-                let Plain { reflected, reflected_schlick } = seen.plain();
+                let Plain { reflected, reflected_schlick, reflected_edge } = seen.plain();
                 plain.extend([reflected, reflected_schlick]);
+                edges.push(reflected_edge * EDGE_SCALE);
                 row.push(reflected);
                 for k in 0..2 * ETA_NODES {
                     let eta = if k < ETA_NODES { eta_node(k) } else { 1.0 / eta_node(k - ETA_NODES) };
@@ -231,7 +241,7 @@ mod tests {
             }
             averages.push(cosine_average(&row));
         }
-        let values = plain.into_iter().chain(averages).chain(blends).chain(refracted);
+        let values = plain.into_iter().chain(averages).chain(blends).chain(refracted).chain(edges);
         let bytes: Vec<u8> =
             values.flat_map(|v| ((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_le_bytes()).collect();
         assert_eq!(bytes.len(), TABLES.len());
@@ -254,6 +264,7 @@ mod tests {
                 let (a, b) = (energy.plain(), seen.plain());
                 assert!((a.reflected - b.reflected).abs() < 5e-3, "{r} {cos}");
                 assert!((a.reflected_schlick - b.reflected_schlick).abs() < 6e-3, "{r} {cos}");
+                assert!((a.reflected_edge - b.reflected_edge).abs() < 1e-3, "{r} {cos}");
                 for eta in [1.01, 1.1, 1.33, 1.5, 2.4, 4.0, 1.0 / 1.1, 1.0 / 1.5, 1.0 / 2.4] {
                     let (ra, rb) = (energy.refractive(EtaPlace::of(eta)), seen.refractive(eta));
                     // Below 1 the critical angle is a step, which only the sum doesn't have.

@@ -3,6 +3,7 @@
 //! Christopher Kulla and Alejandro Conty, *Revisiting Physically Based Shading at Imageworks*,
 //! SIGGRAPH course 2017, for the averages over the hemisphere.
 
+use super::energy::Plain;
 use crate::math::{Rgb, Vec3, sqr};
 
 /// Reflectance of a dielectric by Fresnel's equations. `cos` ≥ 0 is that of the incident angle and
@@ -70,28 +71,64 @@ impl Dielectric {
         self.at_blend(self.blend(cos))
     }
 
+    /// What single scattering keeps, by its averages E and S.
+    pub fn albedo(&self, plain: Plain, blend: f32) -> Rgb {
+        self.f0.map(|f0| f0 * (plain.reflected - blend) + self.f90 * blend)
+    }
+
     /// Mean over the hemisphere.
     pub fn average(&self) -> Rgb {
         self.at_blend(((average_dielectric(self.eta) - self.real_f0) * self.scale).clamp(0.0, 1.0))
     }
 }
 
-/// A metal by Schlick's approximation: `f0 + (1 − f0)(1 − cos θ)⁵`.
+/// A metal by Schlick's approximation with a tint near grazing: `f0 + (1 − f0)(1 − cos θ)⁵ − b cos θ (1 − cos θ)⁶`.
+///
+/// Peter Kutz, Miloš Hašan and Dave Edmondson, *Novel aspects of the Adobe Standard Material*, 2023: `b` is such
+/// that at cos θ = 1/7, some 82 degrees, where the last term is largest, Schlick's value is multiplied by the tint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Metal {
     pub f0: Rgb,
+    b: Rgb,
 }
 
 impl Metal {
-    #[inline]
-    pub fn reflectance(&self, cos: f32) -> Rgb {
-        self.f0.lerp(Rgb::WHITE, schlick(cos))
+    /// By Schlick's approximation alone where `edge` is white.
+    pub fn new(f0: Rgb, edge: Rgb) -> Self {
+        Self::through(f0, f0.lerp(Rgb::WHITE, schlick(1.0 / 7.0)) * edge)
     }
 
-    /// Mean over the hemisphere: 2 ∫ (1 − μ)⁵ μ dμ = 1/21.
-    pub fn average(&self) -> Rgb {
-        self.f0.lerp(Rgb::WHITE, 1.0 / 21.0)
+    /// With reflectance `f82` at cos θ = 1/7.
+    pub fn through(f0: Rgb, f82: Rgb) -> Self {
+        // 7 (7/6)⁶.
+        const SCALE: f32 = 17.651_377;
+        let b = (f0.lerp(Rgb::WHITE, schlick(1.0 / 7.0)) - f82) * SCALE;
+        Self { f0, b }
     }
+
+    #[inline]
+    pub fn reflectance(&self, cos: f32) -> Rgb {
+        let schlick = schlick(cos);
+        let edge = edge(cos);
+        self.f0.zip(self.b, |f0, b| (f0 + (1.0 - f0) * schlick - b * edge).clamp(0.0, 1.0))
+    }
+
+    /// Mean over the hemisphere: 2 ∫ (1 − μ)⁵ μ dμ = 1/21, 2 ∫ μ (1 − μ)⁶ μ dμ = 1/126.
+    pub fn average(&self) -> Rgb {
+        self.f0.zip(self.b, |f0, b| (f0 + (1.0 - f0) / 21.0 - b / 126.0).clamp(0.0, 1.0))
+    }
+
+    /// What single scattering keeps, by its averages.
+    pub fn albedo(&self, plain: Plain) -> Rgb {
+        let Plain { reflected, reflected_schlick, reflected_edge } = plain;
+        self.f0.zip(self.b, |f0, b| f0 * (reflected - reflected_schlick) + reflected_schlick - b * reflected_edge)
+    }
+}
+
+/// cos (1 − cos)⁶.
+#[inline]
+pub(super) fn edge(cos: f32) -> f32 {
+    cos * schlick(cos) * (1.0 - cos).max(0.0)
 }
 
 /// (1 − cos)⁵.
@@ -152,8 +189,19 @@ mod tests {
             let exact = average(|mu| fresnel_dielectric(mu, eta));
             assert!((average_dielectric(eta) - exact).abs() < 7e-3, "{eta}: {exact}");
         }
-        let metal = Metal { f0: Rgb::new(0.1, 0.5, 0.9) };
-        assert!((metal.average().g - average(|mu| metal.reflectance(mu).g)).abs() < 1e-4);
+        for edge in [Rgb::WHITE, Rgb::new(0.2, 0.5, 1.0)] {
+            let metal = Metal::new(Rgb::new(0.1, 0.5, 0.9), edge);
+            let exact = Rgb::new(
+                average(|mu| metal.reflectance(mu).r),
+                average(|mu| metal.reflectance(mu).g),
+                average(|mu| metal.reflectance(mu).b),
+            );
+            let d = metal.average() - exact;
+            assert!(d.to_array().iter().all(|d| d.abs() < 1e-4), "{edge:?}: {d:?}");
+            // The tint is that of 82 degrees.
+            let at = metal.reflectance(1.0 / 7.0).g / Metal::new(metal.f0, Rgb::WHITE).reflectance(1.0 / 7.0).g;
+            assert!((at - edge.g).abs() < 1e-5, "{at}");
+        }
     }
 
     #[test]

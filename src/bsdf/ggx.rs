@@ -1,10 +1,11 @@
-//! The GGX distribution of microfacets, isotropic.
+//! The GGX distribution of microfacets, as wide along x as `x` says and along y as `y` says.
 //!
-//! D(h) = α² / (π (x² + y² + α²z²)²): Walter, Marschner, Li and Torrance, *Microfacet Models for
+//! D(h) = 1 / (π αx αy ((x/αx)² + (y/αy)² + z²)²): Walter, Marschner, Li and Torrance, *Microfacet Models for
 //! Refraction through Rough Surfaces*, EGSR 2007. Smith's shadowing, correlated in height: Heitz,
 //! JCGT 3(2), 2014. Visible normals: Heitz, JCGT 7(4), 2018, by the spherical caps of Dupuy and
 //! Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, HPG 2023; for reflection bounded as
-//! in Tokuyoshi and Eto, *Bounded VNDF Sampling for Smith–GGX Reflections*, SIGGRAPH Asia 2023.
+//! in Tokuyoshi and Eto, *Bounded VNDF Sampling for Smith–GGX Reflections*, SIGGRAPH Asia 2023, by the
+//! smaller width.
 //!
 //! Directions `w` have z > 0 here. All terms are written so that none cancels as α goes to 0.
 
@@ -17,24 +18,41 @@ use crate::sampling::warp::sample_cone;
 /// and half vectors in f32 resolve no less than a thousandth of it.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
 
-/// GGX with width `alpha` ≥ [`MIN_ALPHA`].
+/// GGX with widths ≥ [`MIN_ALPHA`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ggx {
-    pub alpha: f32,
+    pub x: f32,
+    pub y: f32,
 }
 
 impl Ggx {
+    /// As wide in every direction.
+    #[cfg(test)]
+    pub fn round(alpha: f32) -> Self {
+        Self { x: alpha, y: alpha }
+    }
+
+    /// Of widths that are told from a mirror's; `None` for a mirror.
+    pub fn new([x, y]: [f32; 2]) -> Option<Self> {
+        (x.max(y) >= MIN_ALPHA).then(|| Self { x: x.max(MIN_ALPHA), y: y.max(MIN_ALPHA) })
+    }
+
+    /// The width of a round distribution that is about as rough.
+    pub fn mean(self) -> f32 {
+        (self.x * self.y).sqrt()
+    }
+
     /// Density of microfacet normals.
     #[inline]
     pub fn d(self, h: Vec3) -> f32 {
-        let alpha_squared = sqr(self.alpha);
-        alpha_squared * FRAC_1_PI / sqr(h.x * h.x + h.y * h.y + alpha_squared * h.z * h.z)
+        let area = self.x * self.y;
+        FRAC_1_PI / (area * sqr(sqr(h.x / self.x) + sqr(h.y / self.y) + h.z * h.z))
     }
 
     /// |z| √(1 + α² tan²θ) = |z| (1 + 2Λ).
     #[inline]
     pub fn slant(self, w: Vec3) -> f32 {
-        (w.z * w.z + sqr(self.alpha) * (w.x * w.x + w.y * w.y)).sqrt()
+        (w.z * w.z + sqr(self.x * w.x) + sqr(self.y * w.y)).sqrt()
     }
 
     /// G2(wo, wi) / (4 cos θo) for directions on either side: shadowing correlated in height.
@@ -74,19 +92,19 @@ impl Ggx {
     /// The factor k by which the cap is cut: Tokuyoshi and Eto, equation 5.
     #[inline]
     fn bound(self, wo: Vec3) -> f32 {
-        let alpha_squared = sqr(self.alpha.min(1.0));
+        let alpha_squared = sqr(self.x.min(self.y).min(1.0));
         let s_squared = sqr(1.0 + (wo.x * wo.x + wo.y * wo.y).sqrt());
         (1.0 - alpha_squared) * s_squared / (s_squared + alpha_squared * wo.z * wo.z)
     }
 
     #[inline]
     fn stretch(self, w: Vec3) -> Vec3 {
-        Vec3::new(self.alpha * w.x, self.alpha * w.y, w.z).normalize()
+        Vec3::new(self.x * w.x, self.y * w.y, w.z).normalize()
     }
 
     #[inline]
     fn unstretch(self, h: Vec3) -> Vec3 {
-        Vec3::new(self.alpha * h.x, self.alpha * h.y, h.z.max(0.0)).normalize_or(Vec3::Z)
+        Vec3::new(self.x * h.x, self.y * h.y, h.z.max(0.0)).normalize_or(Vec3::Z)
     }
 }
 
@@ -102,7 +120,7 @@ mod tests {
     #[test]
     fn projected_area_is_one() {
         for alpha in [1e-4_f32, 0.01, 0.3, 1.0] {
-            let (ggx, n) = (Ggx { alpha }, 4000);
+            let (ggx, n) = (Ggx::round(alpha), 4000);
             let mut sum = 0.0;
             for i in 0..n {
                 // tan²θ = α² x/(1 − x) makes D cos θ dω uniform in x.
@@ -121,7 +139,7 @@ mod tests {
     #[test]
     fn drawn_normals_are_visible() {
         for alpha in [1e-4, 0.05, 0.5, 1.0] {
-            let ggx = Ggx { alpha };
+            let ggx = Ggx::round(alpha);
             for wo in views() {
                 for i in 0..200 {
                     let u = [(i as f32 * 0.618_034).fract(), (i as f32 * 0.754_877).fract()];
@@ -141,7 +159,7 @@ mod tests {
     #[test]
     fn bounding_raises_the_density() {
         for alpha in [0.05, 0.5, 1.0] {
-            let ggx = Ggx { alpha };
+            let ggx = Ggx::round(alpha);
             for wo in views() {
                 let h = (wo + Vec3::Z).normalize();
                 let visible = 0.5 * ggx.d(h) / (wo.z + ggx.slant(wo));

@@ -1,25 +1,37 @@
 //! Scattering at surfaces.
 //!
 //! Directions are unit, local, with z along the shading normal; `wo` points to the camera, `wi` to
-//! the light, both on either side. One file per lobe; [`Bsdf`] composes them to the surface of
-//! glTF 2.0 and of Blender's Principled node.
+//! the light, both on either side. One file per lobe, listed in `lobe.rs`; `principled.rs` composes
+//! them to the layered surface that all doors share, `closure.rs` lists the single lobes that shader
+//! nodes name, and a [`Bsdf`] is the mixture that comes of it, seen from one direction.
 
+mod cie;
+mod closure;
+mod conductor;
 mod energy;
 mod fresnel;
 mod ggx;
+mod glass;
 mod lambert;
+mod lobe;
+mod mixture;
+mod oren_nayar;
 mod principled;
 #[cfg(test)]
 mod quadrature;
 mod reflection;
 mod refraction;
 mod response;
+mod sheen;
 mod surface;
 mod thin;
-mod view;
+mod thin_film;
+mod toon;
+mod translucent;
 
+pub use closure::{Closure, Microfacets};
+pub use conductor::Conductor;
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
-pub use principled::Bsdf;
+pub use mixture::{Bsdf, Builder};
 pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
-pub use surface::Surface;
-pub use view::View;
+pub use surface::{Coat, Sheen, Stretched, Surface, ThinFilm};

@@ -1,181 +1,161 @@
-//! The layered surface of glTF 2.0 (metallic-roughness with KHR_materials_specular, _ior and
-//! _transmission), which is Blender's Principled node: metal over transmission over the dielectric's
-//! reflection over diffuse, the diffuse part scaled by what the reflection leaves.
-//!
-//! All reflections share one roughness, so they are one microfacet lobe whose Fresnel term is the
-//! sum of theirs. Here is what doesn't depend on directions; `view.rs` has the rest.
+//! The layered surface of Blender's Principled node, of glTF 2.0 with its extensions, of UsdPreviewSurface and of
+//! MaterialX's standard_surface and open_pbr_surface: sheen over coat over metal over glass over the dielectric's
+//! reflection over diffuse light, what is below scaled by what the layers above leave.
 
-use super::energy::{EtaPlace, RoughnessPlace, several_bounces};
+use super::closure::{beneath, facets, unit};
 use super::fresnel::{Dielectric, Metal, f0_from_eta};
-use super::ggx::{Ggx, MIN_ALPHA};
-use super::{BsdfEval, BsdfSample, ByLobe, Surface, View};
-use crate::math::{Rgb, Vec3, sqr};
-
-/// Where α |η − 1| is smaller, the spread of refraction can't be told from none.
-const MIN_BEND: f32 = 2e-5;
+use super::ggx::Ggx;
+use super::glass::{Boundary, Glass};
+use super::lobe::Scatter;
+use super::mixture::{Builder, Class};
+use super::reflection::{Fresnel, Reflection};
+use super::sheen::SheenLobe;
+use super::surface::{Coat, Sheen, Surface};
+use super::thin_film::Base;
+use super::translucent::Translucent;
+use crate::math::{Frame, Rgb, Vec3, safe_sqrt, sqr};
 
 /// Stands for an infinite index of refraction; the reflectance is 0.996.
 const LARGEST_IOR: f32 = 1e3;
 
-/// A surface ready to scatter. It depends on no direction, so the one of a surface without textures
-/// can be kept, one for each side.
-#[derive(Clone, Copy, Debug)]
-pub struct Bsdf {
-    /// `None` for a smooth surface.
-    pub(super) rough: Option<Rough>,
-    pub(super) metal: Option<MetalLayer>,
-    pub(super) glass: Option<GlassLayer>,
-    pub(super) specular: Option<SpecularLayer>,
-    /// Diffuse albedo below the specular layer, times its weight.
-    pub(super) diffuse: Rgb,
+/// Adds the layers of `surface`, together times `weight`.
+pub(super) fn add(builder: &mut Builder, weight: Rgb, surface: &Surface) {
+    let base = surface.base_color.map(unit);
+    let ior = match surface.ior {
+        0.0 => LARGEST_IOR,
+        ior if ior > 0.0 => ior.clamp(1.0 / LARGEST_IOR, LARGEST_IOR),
+        _ => 1.0,
+    };
+    // What reaches the layer in the making.
+    let mut through = weight;
+    if let Some(sheen) = &surface.sheen {
+        through *= add_sheen(builder, through, sheen, surface.coat.as_ref());
+    }
+    if let Some(coat) = &surface.coat {
+        through *= add_coat(builder, through, coat);
+    }
+    let metallic = unit(surface.metallic);
+    if metallic > 0.0 {
+        add_metal(builder, through * metallic, surface, base);
+    }
+    through *= 1.0 - metallic;
+    let transmission = unit(surface.transmission);
+    if metallic < 1.0 && transmission > 0.0 {
+        add_glass(builder, through * transmission, surface, base, ior);
+    }
+    through *= 1.0 - transmission;
+    if through.is_black() {
+        return;
+    }
+    through *= add_specular(builder, through, surface, ior);
+    let translucent = unit(surface.translucent);
+    if translucent > 0.0 {
+        let color = surface.translucent_color.map(unit);
+        builder.push(through * color * translucent, Class::Diffuse, None, Translucent);
+    }
+    builder.add_diffuse(through * (1.0 - translucent), base, surface.diffuse_roughness);
 }
 
-/// The microfacets.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rough {
-    pub ggx: Ggx,
-    pub place: RoughnessPlace,
+/// What is left of light below a layer of `albedo`.
+fn left(albedo: Rgb) -> f32 {
+    (1.0 - albedo.max_component()).clamp(0.0, 1.0)
 }
 
-/// Reflection at metal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MetalLayer {
-    pub fresnel: Metal,
-    pub several_bounces: Rgb,
-    pub weight: f32,
+fn add_sheen(builder: &mut Builder, weight: Rgb, sheen: &Sheen, coat: Option<&Coat>) -> f32 {
+    // Fibers stand on whatever is on top.
+    let frame = coat.and_then(|coat| {
+        let share = unit(coat.weight);
+        let n = coat.frame?.n * share + Vec3::Z * (1.0 - share);
+        n.try_normalize().map(Frame::from_z)
+    });
+    let frame = builder.frame(frame);
+    let Some(lobe) = SheenLobe::new(unit(sheen.roughness), builder.wo(frame)) else { return 1.0 };
+    let color = sheen.color.map(|c| c.max(0.0));
+    let albedo = color * lobe.albedo().above;
+    builder.push(weight * color, Class::Diffuse, frame, lobe);
+    left(albedo)
 }
 
-/// Reflection over the diffuse part.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SpecularLayer {
-    pub fresnel: Dielectric,
-    pub place: EtaPlace,
-    pub several_bounces: Rgb,
-    pub weight: f32,
+/// What is left for the layers below.
+fn add_coat(builder: &mut Builder, weight: Rgb, coat: &Coat) -> Rgb {
+    let share = unit(coat.weight);
+    if share == 0.0 {
+        return Rgb::WHITE;
+    }
+    let ior = if coat.ior > 1.0 { coat.ior.min(LARGEST_IOR) } else { 1.0 };
+    let frame = builder.frame(coat.frame);
+    let wo = builder.wo(frame);
+    let mut below = 1.0;
+    if ior > 1.0 {
+        let fresnel = Dielectric::new(ior, Rgb::splat(f0_from_eta(ior)), 1.0);
+        let ggx = Ggx::new([sqr(unit(coat.roughness)); 2]);
+        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), false, wo);
+        below = left(lobe.albedo().above * share);
+        builder.push(weight * share, Class::Interface, frame, lobe);
+    }
+    // Of thickness 1, so that light goes 1/cos of its way within: tint^(1/cos) is left.
+    let within = 1.0 / safe_sqrt(1.0 - (1.0 - sqr(wo.z.min(1.0))) / sqr(ior)).max(1e-3);
+    let tint = if coat.tint == Rgb::WHITE { Rgb::WHITE } else { coat.tint.map(|c| c.max(0.0).powf(within)) };
+    Rgb::WHITE.lerp(tint, share) * below
 }
 
-/// Reflection and passage at a boundary between transparent media or at a thin sheet.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct GlassLayer {
-    /// As seen from the camera's side.
-    pub fresnel: Dielectric,
-    pub place: EtaPlace,
-    pub passage: Passage,
-    pub tint: Rgb,
-    pub weight: f32,
+fn add_metal(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb) {
+    let metal = Metal::new(base, surface.metal_edge.map(unit));
+    let fresnel = beneath(&surface.film, Base::Metal(metal)).map_or(Fresnel::Metal(metal), Fresnel::Film);
+    add_facets(builder, weight, surface, fresnel);
 }
 
-/// How light passes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Passage {
-    /// On in the same direction.
-    Straight,
-    /// Refracted at a smooth boundary.
-    Bent,
-    /// Scattered by a rough sheet.
-    RoughThin,
-    /// Refracted at a rough boundary.
-    RoughBent,
+/// Reflection at the microfacets of the base; what it leaves.
+fn add_facets(builder: &mut Builder, weight: Rgb, surface: &Surface, fresnel: Fresnel) -> f32 {
+    let (ggx, frame) = facets(surface.roughness, &surface.stretched);
+    let frame = builder.frame(frame);
+    let lobe = Reflection::new(ggx, fresnel, surface.multiscatter, builder.wo(frame));
+    let left = left(lobe.albedo().above);
+    builder.push(weight, Class::Interface, frame, lobe);
+    left
 }
 
-impl Bsdf {
-    /// The BSDF of `surface`. `entering` is true where `wo` is on the outside, the side to which the
-    /// geometric normal points; it has no meaning for thin surfaces. Roughness below 0.01 counts as
-    /// 0, a perfect mirror.
-    pub fn new(surface: &Surface, entering: bool) -> Self {
-        let base = surface.base_color.map(unit);
-        let ior = match surface.ior {
-            0.0 => LARGEST_IOR,
-            ior if ior > 0.0 => ior.clamp(1.0 / LARGEST_IOR, LARGEST_IOR),
-            _ => 1.0,
-        };
-        let alpha = sqr(unit(surface.roughness));
-        let rough = (alpha >= MIN_ALPHA).then(|| Rough { ggx: Ggx { alpha }, place: RoughnessPlace::of(alpha) });
-        let lost = |average: Rgb| rough.map_or(Rgb::WHITE, |r| several_bounces(average, r.place.reflected_average()));
-
-        let weight = unit(surface.metallic);
-        let fresnel = Metal { f0: base };
-        let metal = (weight > 0.0).then(|| MetalLayer { fresnel, several_bounces: lost(fresnel.average()), weight });
-
-        let below_metal = 1.0 - weight;
-        let transmission = unit(surface.transmission);
-        let glass = (below_metal * transmission > 0.0)
-            .then(|| GlassLayer::new(surface, base, ior, alpha, entering, below_metal * transmission));
-
-        let weight = below_metal * (1.0 - transmission);
-        // Approximation: an opaque surface of an index below 1 has no critical angle, the step in
-        // which the tables can't hold.
-        let ior = ior.max(1.0 / ior);
-        let fresnel = tinted(surface, ior, ior);
-        let visible = weight > 0.0 && ior != 1.0 && (fresnel.f90 > 0.0 || !fresnel.f0.is_black());
-        let specular = visible.then(|| SpecularLayer {
-            fresnel,
-            place: EtaPlace::of(ior),
-            several_bounces: lost(fresnel.average()),
-            weight,
-        });
-        Self { rough, metal, glass, specular, diffuse: base * weight }
-    }
-
-    /// The BSDF seen from `wo`: what all questions about it share.
-    pub fn view(&self, wo: Vec3) -> View<'_> {
-        View::new(self, wo)
-    }
-
-    /// Draws a direction: `uc` chooses the lobe, `u` the direction. `None` where nothing scatters.
-    pub fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
-        self.view(wo).sample(uc, u)
-    }
-
-    /// The value for a pair of directions.
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfEval {
-        self.view(wo).eval(wi)
-    }
-
-    /// The directional albedo per class, which the color passes hold.
-    pub fn albedo(&self, wo: Vec3) -> ByLobe {
-        self.view(wo).albedo()
-    }
-
-    /// True where `eval` is 0 for all directions: asking lights is of no use.
-    pub fn is_delta_only(&self) -> bool {
-        let straight = self.glass.is_none_or(|glass| matches!(glass.passage, Passage::Straight | Passage::Bent));
-        let reflects = self.metal.is_some() || self.specular.is_some() || self.glass.is_some();
-        !self.has_diffuse() && straight && (self.rough.is_none() || !reflects)
-    }
-
-    /// True where some light scatters beneath the surface.
-    pub fn has_diffuse(&self) -> bool {
-        !self.diffuse.is_black()
-    }
+fn add_glass(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb, ior: f32) {
+    let eta = if builder.entering() || surface.thin { ior } else { 1.0 / ior };
+    let fresnel = tinted(surface, f0_from_eta(ior), eta);
+    let film = if surface.thin { surface.film } else { builder.film_seen(&surface.film, ior) };
+    let boundary = Boundary {
+        fresnel,
+        film: beneath(&film, Base::Dielectric(fresnel)),
+        reflects: true,
+        tints: [Rgb::WHITE, if surface.thin { base } else { base.map(f32::sqrt) }],
+        thin: surface.thin,
+    };
+    let ggx = Ggx::new([sqr(unit(surface.roughness)); 2]);
+    let lobe = Glass::new(ggx, boundary, surface.multiscatter, builder.wo(None));
+    builder.push(weight, Class::Interface, None, lobe);
 }
 
-impl GlassLayer {
-    fn new(surface: &Surface, base: Rgb, ior: f32, alpha: f32, entering: bool, weight: f32) -> Self {
-        let eta = if entering || surface.thin { ior } else { 1.0 / ior };
-        let smooth = alpha < MIN_ALPHA;
-        let passage = match surface.thin {
-            true if smooth => Passage::Straight,
-            true => Passage::RoughThin,
-            false if smooth => Passage::Bent,
-            false if alpha * (eta - 1.0).abs() < MIN_BEND => Passage::Straight,
-            false => Passage::RoughBent,
-        };
-        let tint = if surface.thin { base } else { base.map(f32::sqrt) };
-        Self { fresnel: tinted(surface, ior, eta), place: EtaPlace::of(eta), passage, tint, weight }
+/// Reflection over the diffuse part; what it leaves.
+fn add_specular(builder: &mut Builder, weight: Rgb, surface: &Surface, ior: f32) -> f32 {
+    let level = surface.specular_level.max(0.0);
+    let curve = if level == 1.0 {
+        ior
+    } else {
+        let root = (f0_from_eta(ior) * level).min(0.99).sqrt();
+        (1.0 + root) / (1.0 - root)
+    };
+    // Approximation: an opaque surface of an index below 1 has no critical angle, the step in
+    // which the tables can't hold.
+    let curve = curve.max(1.0 / curve);
+    let fresnel = tinted(surface, f0_from_eta(ior) * level, curve);
+    let film = beneath(&surface.film, Base::Dielectric(fresnel));
+    if film.is_none() && (curve == 1.0 || (fresnel.f90 == 0.0 && fresnel.f0.is_black())) {
+        return 1.0;
     }
+    add_facets(builder, weight, surface, film.map_or(Fresnel::Dielectric(fresnel), Fresnel::Film))
 }
 
-/// The dielectric's reflectance at relative index `eta`, `ior` or its inverse.
-fn tinted(surface: &Surface, ior: f32, eta: f32) -> Dielectric {
+/// The dielectric's reflectance: `f0` at normal incidence, tinted, along the curve of `eta`.
+fn tinted(surface: &Surface, f0: f32, eta: f32) -> Dielectric {
     let weight = unit(surface.specular);
-    let f0 = surface.specular_color.map(|c| (c.max(0.0) * f0_from_eta(ior)).min(1.0) * weight);
+    let f0 = surface.specular_color.map(|c| (c.max(0.0) * f0).min(1.0) * weight);
     // Total reflection is total, whatever weight reflection has.
     let f90 = if eta < 1.0 { 1.0 } else { weight };
     Dielectric::new(eta, f0, f90)
-}
-
-/// `x` within 0 to 1; 0 for NaN.
-fn unit(x: f32) -> f32 {
-    if x > 0.0 { x.min(1.0) } else { 0.0 }
 }

@@ -2,7 +2,7 @@
 //! that would draw them.
 
 use super::energy::{Plain, Refractive};
-use super::fresnel::{Dielectric, refract, schlick};
+use super::fresnel::{Dielectric, edge, refract, schlick};
 use super::ggx::{Ggx, MIN_ALPHA};
 use super::reflection::reflect;
 use crate::math::{Rgb, Vec3, safe_sqrt};
@@ -47,7 +47,7 @@ struct Microfacet {
 impl Seen {
     /// Those seen at `cos` to the normal.
     pub fn new(alpha: f32, cos: f32) -> Self {
-        let ggx = Ggx { alpha: alpha.max(MIN_ALPHA) };
+        let ggx = Ggx::round(alpha.max(MIN_ALPHA));
         let cos = cos.max(1e-5);
         let wo = Vec3::new(safe_sqrt(1.0 - cos * cos), 0.0, cos);
         let scale = 1.0 / (AZIMUTHS * HEIGHTS) as f32;
@@ -71,6 +71,7 @@ impl Seen {
         Plain {
             reflected: self.reflecting.iter().map(|m| m.weight).sum(),
             reflected_schlick: self.reflecting.iter().map(|m| m.weight * schlick(m.cos)).sum(),
+            reflected_edge: self.reflecting.iter().map(|m| m.weight * edge(m.cos)).sum(),
         }
     }
 

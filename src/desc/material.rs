@@ -5,8 +5,8 @@
 
 use std::sync::Arc;
 
-use super::TextureRef;
 use super::graph::{Graph, ValueId};
+use super::{PartDesc, TextureRef};
 use crate::error::Place;
 
 /// A colour: `factor × texture.rgb × graph.rgb`, linear.
@@ -143,6 +143,8 @@ pub struct CoatDesc {
     pub roughness: ScalarInput,
     /// Index of refraction; glTF fixes it at 1.5.
     pub ior: f64,
+    /// What is left of light that goes straight down and up through it; white for a clear one.
+    pub tint: ColorInput,
     /// Its own normal map.
     pub normal: Option<NormalInput>,
 }
@@ -163,23 +165,48 @@ pub struct IridescenceDesc {
     pub weight: ScalarInput,
     /// Index of refraction of the film.
     pub ior: f64,
-    /// Thickness in nanometres where the texture is 0.
+    /// Thickness in nanometres where `thickness` is 0.
     pub thickness_min: f64,
-    /// Thickness in nanometres where the texture is 1, or without texture.
+    /// Thickness in nanometres where `thickness` is 1.
     pub thickness_max: f64,
-    /// Where between the two; `None` for `thickness_max`.
-    pub thickness_texture: Option<(TextureRef, Channel)>,
+    /// Where between the two.
+    pub thickness: ScalarInput,
 }
 
-/// KHR_materials_anisotropy.
+/// How strength widens microfacets of width α.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AnisotropyLaw {
+    /// Of KHR_materials_anisotropy: to `α + (1 − α) strength²` along the direction.
+    Gltf,
+    /// Of Blender's Principled and Metallic BSDF: α over and times `√(1 − 0.9 strength)`, wider along the direction.
+    Aspect,
+    /// Of Blender's Glossy BSDF: α times and over `1 − strength`, narrower along the direction; of a strength below
+    /// 0 the other way round.
+    Glossy,
+}
+
+/// Microfacets that are wider along one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnisotropyDesc {
     /// Strength, 0 to 1.
-    pub strength: f64,
+    pub strength: ScalarInput,
     /// Direction in tangent space, radians counter-clockwise from the tangent.
-    pub rotation: f64,
+    pub rotation: ScalarInput,
     /// Direction in red and green, strength in blue.
     pub texture: Option<TextureRef>,
+    /// The tangent in world space, a value of the material's graph; `None` for that of the first UV set.
+    pub tangent: Option<ValueId>,
+    /// What strength means.
+    pub law: AnisotropyLaw,
+}
+
+/// Diffuse light that leaves on the other side (KHR_materials_diffuse_transmission).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TranslucentDesc {
+    /// Share of the diffuse light, 0 to 1.
+    pub weight: ScalarInput,
+    /// Albedo.
+    pub color: ColorInput,
 }
 
 /// A surface.
@@ -202,22 +229,37 @@ pub struct MaterialDesc {
     /// False where back faces are not seen (glTF without `doubleSided`). A path tracer renders
     /// both sides; kept for doors and reports.
     pub double_sided: bool,
+    /// Share that passes unscattered on top of all that the surface does, per channel; not subject to `alpha_mode`
+    /// (Blender's Transparent BSDF). Black for none.
+    pub transparency: ColorInput,
+    /// What scatters in place of the layers below, where it is not empty.
+    pub parts: Vec<PartDesc>,
     /// 0 dielectric, 1 metal.
     pub metallic: ScalarInput,
+    /// What a metal reflects at 82 degrees, over what it would by Schlick's curve; white for that.
+    pub metal_edge: ColorInput,
+    /// Roughness of the diffuse part, 0 for Lambert's law.
+    pub diffuse_roughness: ScalarInput,
     /// Perceptual roughness; the microfacet width is its square.
     pub roughness: ScalarInput,
+    /// True where light that scatters between microfacets is not lost.
+    pub multiscatter: bool,
     /// Index of refraction.
     pub ior: f64,
     /// Weight of the dielectric's reflection (KHR_materials_specular).
     pub specular: ScalarInput,
     /// Tint of the dielectric's reflection at normal incidence.
     pub specular_color: ColorInput,
+    /// Factor of the opaque dielectric's reflectance at normal incidence that changes its index with it.
+    pub specular_level: ScalarInput,
     /// Share of what enters the dielectric that is refracted instead of scattered.
     pub transmission: ScalarInput,
     /// The inside; `None` for thin-walled.
     pub volume: Option<VolumeDesc>,
     /// 20 / Abbe number; 0 for none (KHR_materials_dispersion).
     pub dispersion: f64,
+    /// Diffuse light to the other side.
+    pub translucent: Option<TranslucentDesc>,
     /// Clear coat.
     pub coat: Option<CoatDesc>,
     /// Sheen.
@@ -253,14 +295,21 @@ impl Default for MaterialDesc {
             alpha: ScalarInput::constant(1.0),
             alpha_mode: AlphaMode::Opaque,
             double_sided: true,
+            transparency: ColorInput::constant([0.0; 3]),
+            parts: Vec::new(),
             metallic: ScalarInput::constant(0.0),
+            metal_edge: ColorInput::constant([1.0; 3]),
+            diffuse_roughness: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(0.5),
+            multiscatter: true,
             ior: 1.5,
             specular: ScalarInput::constant(1.0),
             specular_color: ColorInput::constant([1.0; 3]),
+            specular_level: ScalarInput::constant(1.0),
             transmission: ScalarInput::constant(0.0),
             volume: None,
             dispersion: 0.0,
+            translucent: None,
             coat: None,
             sheen: None,
             iridescence: None,
@@ -278,41 +327,67 @@ impl Default for MaterialDesc {
 impl MaterialDesc {
     /// Every texture that its inputs look up by themselves, in no order; those of the graph come on top.
     pub fn textures(&self) -> impl Iterator<Item = TextureRef> {
-        let thickness = self.iridescence.as_ref().and_then(|i| i.thickness_texture.map(|(texture, _)| texture));
-        let anisotropy = self.anisotropy.as_ref().and_then(|a| a.texture);
-        self.inputs().filter_map(|(texture, _)| texture).chain(thickness).chain(anisotropy)
+        self.inputs().into_iter().filter_map(|(texture, _)| texture)
     }
 
     /// Every value of the graph that an input names, in no order.
     pub fn graph_values(&self) -> impl Iterator<Item = ValueId> {
-        self.inputs().filter_map(|(_, value)| value)
+        self.inputs().into_iter().filter_map(|(_, value)| value)
     }
 
     /// What varies each input, in no order: a texture, a value of the graph.
-    fn inputs(&self) -> impl Iterator<Item = (Option<TextureRef>, Option<ValueId>)> {
-        let color = |input: &ColorInput| (input.texture, input.graph);
-        let scalar = |input: &ScalarInput| (input.texture.map(|(texture, _)| texture), input.graph);
-        let normal = |input: NormalInput| (input.texture(), input.value());
-        [
-            Some(color(&self.base_color)),
-            Some(scalar(&self.alpha)),
-            Some(scalar(&self.metallic)),
-            Some(scalar(&self.roughness)),
-            Some(scalar(&self.specular)),
-            Some(color(&self.specular_color)),
-            Some(scalar(&self.transmission)),
-            self.volume.as_ref().map(|v| scalar(&v.thickness)),
-            self.coat.as_ref().map(|c| scalar(&c.weight)),
-            self.coat.as_ref().map(|c| scalar(&c.roughness)),
-            self.coat.as_ref().and_then(|c| c.normal).map(normal),
-            self.sheen.as_ref().map(|s| color(&s.color)),
-            self.sheen.as_ref().map(|s| scalar(&s.roughness)),
-            self.iridescence.as_ref().map(|i| scalar(&i.weight)),
-            Some(color(&self.emission)),
-            self.normal.map(normal),
-            self.occlusion.as_ref().map(scalar),
-        ]
-        .into_iter()
-        .flatten()
+    fn inputs(&self) -> Vec<Varying> {
+        let mut all: Vec<Varying> = self.layers().into_iter().flatten().collect();
+        all.extend([of_color(&self.emission), of_scalar(&self.alpha), of_color(&self.transparency)]);
+        all.extend(self.occlusion.as_ref().map(of_scalar));
+        all.extend(self.normal.map(of_normal));
+        all.extend(self.parts.iter().flat_map(PartDesc::inputs));
+        all
     }
+
+    /// Inputs of what scatters.
+    pub(super) fn layers(&self) -> [Option<Varying>; 24] {
+        let Self { coat, sheen, iridescence, anisotropy, translucent, .. } = self;
+        [
+            Some(of_color(&self.base_color)),
+            Some(of_scalar(&self.metallic)),
+            Some(of_color(&self.metal_edge)),
+            Some(of_scalar(&self.diffuse_roughness)),
+            Some(of_scalar(&self.roughness)),
+            Some(of_scalar(&self.specular)),
+            Some(of_color(&self.specular_color)),
+            Some(of_scalar(&self.specular_level)),
+            Some(of_scalar(&self.transmission)),
+            self.volume.as_ref().map(|v| of_scalar(&v.thickness)),
+            translucent.as_ref().map(|t| of_scalar(&t.weight)),
+            translucent.as_ref().map(|t| of_color(&t.color)),
+            coat.as_ref().map(|c| of_scalar(&c.weight)),
+            coat.as_ref().map(|c| of_scalar(&c.roughness)),
+            coat.as_ref().map(|c| of_color(&c.tint)),
+            coat.as_ref().and_then(|c| c.normal).map(of_normal),
+            sheen.as_ref().map(|s| of_color(&s.color)),
+            sheen.as_ref().map(|s| of_scalar(&s.roughness)),
+            iridescence.as_ref().map(|i| of_scalar(&i.weight)),
+            iridescence.as_ref().map(|i| of_scalar(&i.thickness)),
+            anisotropy.as_ref().map(|a| of_scalar(&a.strength)),
+            anisotropy.as_ref().map(|a| of_scalar(&a.rotation)),
+            anisotropy.as_ref().map(|a| (a.texture, None)),
+            anisotropy.as_ref().map(|a| (None, a.tangent)),
+        ]
+    }
+}
+
+/// What varies an input: a texture, a value of the graph.
+pub(super) type Varying = (Option<TextureRef>, Option<ValueId>);
+
+pub(super) fn of_color(input: &ColorInput) -> Varying {
+    (input.texture, input.graph)
+}
+
+pub(super) fn of_scalar(input: &ScalarInput) -> Varying {
+    (input.texture.map(|(texture, _)| texture), input.graph)
+}
+
+pub(super) fn of_normal(input: NormalInput) -> Varying {
+    (input.texture(), input.value())
 }

@@ -8,6 +8,7 @@
 
 mod camera;
 mod check;
+mod closure;
 pub mod graph;
 mod image;
 mod light;
@@ -19,14 +20,15 @@ mod texture;
 
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
+pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
 pub use image::{ColorSpace, ImageDesc, PixelData};
 pub use light::{
     ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
     ShapingDesc,
 };
 pub use material::{
-    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
-    SheenDesc, VolumeDesc,
+    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
+    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::RenderDesc;

@@ -16,9 +16,9 @@ pub fn openness(
     it: &Interaction,
     frame: &Frame,
     settings: &Settings,
-) -> f32 {
+) -> Rgb {
     let (rays, t_max) = (settings.ao_samples, distance(settings));
-    let open: f32 = (0..rays)
+    let open: Rgb = (0..rays)
         .map(|k| {
             let sampler = if rays > 1 { sampler.part(k, rays) } else { *sampler };
             let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
@@ -26,7 +26,7 @@ pub fn openness(
             scene.transmittance(&Ray { t_max, ..it.spawn(w) }, Shadow::Cast)
         })
         .sum();
-    open / rays as f32
+    open * (1.0 / rays as f32)
 }
 
 /// The distance that the settings give; without end unless set.
@@ -41,7 +41,7 @@ pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings
         return sample;
     };
     let frame = scene.shading_frame(&it);
-    sample.ao = Rgb::splat(openness(scene, sampler, vertex, &it, &frame, settings));
+    sample.ao = openness(scene, sampler, vertex, &it, &frame, settings);
     sample.combined = sample.ao;
     sample.alpha = 1.0;
     super::first_hit::describe(scene, &it, &frame, &mut sample);

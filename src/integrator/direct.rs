@@ -1,7 +1,7 @@
 //! Next-event estimation: one light, one point on it, one shadow ray.
 
 use super::scattering::seen;
-use crate::bsdf::{ByLobe, View};
+use crate::bsdf::{Bsdf, ByLobe};
 use crate::light::{Choice, Emitter, LightSample, Receiver, Rules};
 use crate::math::{Frame, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
@@ -13,8 +13,8 @@ pub struct Shading<'a> {
     pub it: &'a Interaction,
     /// Shading frame on the side of `it.wo`.
     pub frame: &'a Frame,
-    /// What scatters.
-    pub bsdf: &'a View<'a>,
+    /// What scatters, in that frame.
+    pub bsdf: &'a Bsdf,
     /// Index of random decisions.
     pub vertex: u32,
 }
@@ -24,7 +24,7 @@ pub struct DirectLight<'a, T> {
     /// What would arrive if nothing stood between.
     pub unoccluded: T,
     /// Share of it that arrives.
-    pub visibility: f32,
+    pub visibility: Rgb,
     /// Rules of the light.
     pub rules: &'a Rules,
 }
@@ -48,11 +48,7 @@ impl Shading<'_> {
         let choice = scene.lights.choose(&at, sampler.get_1d(self.decision(Decision::LightChoice)))?;
         let u = sampler.get_2d(self.decision(Decision::LightPoint));
         let (LightSample { li, wi, end, pdf, delta }, rules) = sample(scene, &at, choice, u)?;
-        let local_wi = self.frame.to_local(wi);
-        if leaks(self.it, wi, local_wi.z) {
-            return None;
-        }
-        let eval = self.bsdf.eval(local_wi);
+        let eval = self.bsdf.eval(self.frame.to_local(wi));
         let weight = if delta { 1.0 } else { power_heuristic(samples * pdf, eval.pdf) };
         let unoccluded = seen(eval.f_cos, rules.seen) * (li * (weight / pdf));
         if unoccluded.sum().is_black() {
@@ -70,7 +66,9 @@ impl Shading<'_> {
         sampler: &Sampler,
         group: Option<usize>,
     ) -> Option<DirectLight<'s, Rgb>> {
-        let at = Receiver { n: Some(self.frame.n), alone: true, ..self.receiver(scene) };
+        let bare = self.bsdf.lacks_diffuse();
+        let at = self.receiver(scene);
+        let at = Receiver { n: if bare { Some(self.frame.n) } else { at.n }, alone: true, ..at };
         let u = sampler.get_1d(self.decision(Decision::ShadowChoice));
         let choice = match group {
             Some(group) => scene.lights.choose_of_group(group, &at, u)?,
@@ -79,11 +77,10 @@ impl Shading<'_> {
         let u = sampler.get_2d(self.decision(Decision::ShadowPoint));
         let (LightSample { li, wi, end, pdf, .. }, rules) = sample(scene, &at, choice, u)?;
         let local_wi = self.frame.to_local(wi);
-        if local_wi.z <= 0.0 || leaks(self.it, wi, local_wi.z) || !rules.seen.diffuse {
+        if !rules.seen.diffuse || (bare && (local_wi.z <= 0.0 || leaks(self.it, wi, local_wi.z))) {
             return None;
         }
-        let response =
-            if self.bsdf.lacks_diffuse() { Rgb::splat(local_wi.z) } else { self.bsdf.eval(local_wi).f_cos.diffuse };
+        let response = if bare { Rgb::splat(local_wi.z) } else { self.bsdf.eval(local_wi).f_cos.diffuse };
         if response.is_black() {
             return None;
         }
@@ -103,14 +100,13 @@ fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> O
     Some((LightSample { pdf: sample.pdf * choice.pmf, ..sample }, &light.rules))
 }
 
-fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> f32 {
+fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
     let ray = end.map_or_else(|| it.spawn(wi), |end| it.spawn_to(end));
     scene.transmittance(&ray, rules.shadow)
 }
 
-/// True where shading and geometric normal disagree on which side `wi` is: light would leak
-/// through the surface, or a reflection go into it.
-pub fn leaks(it: &Interaction, wi: Vec3, local_z: f32) -> bool {
+/// True where shading and geometric normal disagree on which side `wi` is.
+fn leaks(it: &Interaction, wi: Vec3, local_z: f32) -> bool {
     let geometric = it.ng.dot(wi) * if it.front { 1.0 } else { -1.0 };
     geometric * local_z <= 0.0
 }

@@ -27,7 +27,7 @@ fn first_opaque(scene: &Scene, mut ray: Ray) -> Option<Interaction> {
         if scene.is_holdout(&it) {
             break;
         }
-        if scene.opacity(&it) >= scene.pass_alpha_threshold {
+        if scene.alpha(&it) >= scene.pass_alpha_threshold {
             return Some(it);
         }
         ray = it.continued(&ray, hit.t);

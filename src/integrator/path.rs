@@ -4,19 +4,19 @@
 //! for Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use super::ao;
-use super::direct::{Shading, leaks};
+use super::direct::Shading;
 use super::first_hit::{describe, describe_shape};
 use super::media::Media;
 use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
 use super::shadow_pass;
 use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
-use crate::bsdf::{Bsdf, ByLobe, Lobe};
+use crate::bsdf::{ByLobe, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules, Shadow};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
+use crate::scene::{Coverage, Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
 use crate::settings::Settings;
 
 /// Scatterings before roulette begins.
@@ -32,6 +32,10 @@ struct Path {
     mask: u64,
     /// Throughput so far.
     beta: Rgb,
+    /// Share of the picture's alpha that what comes next stands for.
+    alpha: f32,
+    /// Factor of what the surface at which the path has stopped scatters: what is there over the odds of stopping.
+    share: f32,
     /// Applied to `beta` once the light that arrives directly has been counted.
     occlusion: f32,
     /// Share of each class in the first scattering.
@@ -57,6 +61,8 @@ impl Path {
             cone,
             mask: mask::CAMERA,
             beta: Rgb::WHITE,
+            alpha: 1.0,
+            share: 1.0,
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
@@ -101,11 +107,11 @@ pub fn trace(
         let surface = next_surface(scene, sampler, &mut path, |path, met| match met {
             Met::Stretch(segment) if scene.effects.lamps => add_lamps(scene, path, segment, &mut sample),
             Met::Stretch(_) => {}
-            Met::Surface(it, opacity) => {
+            Met::Surface(it, coverage) => {
                 if !described && path.scatterings == 0 {
-                    described = describe_shape(scene, it, opacity, &mut sample);
+                    described = describe_shape(scene, it, coverage.alpha(), &mut sample);
                 }
-                add_emission(scene, path, it, opacity, &mut sample);
+                add_emission(scene, path, it, coverage.opacity, &mut sample);
             }
         });
         let Some(it) = surface else {
@@ -120,10 +126,10 @@ pub fn trace(
         }
         let frame = scene.shading_frame(&it);
         if path.scatterings == 0 {
-            sample.alpha = 1.0;
+            sample.alpha = path.alpha;
             describe(scene, &it, &frame, &mut sample);
             if scene.effects.ao {
-                sample.ao = Rgb::splat(ao::openness(scene, sampler, path.vertex, &it, &frame, settings));
+                sample.ao = ao::openness(scene, sampler, path.vertex, &it, &frame, settings) * path.alpha;
             }
         }
         if scene.material(&it).unlit {
@@ -131,10 +137,9 @@ pub fn trace(
         }
         path.beta *= path.occlusion;
 
-        let surface = Bsdf::new(&scene.surface(&it), it.front);
-        let bsdf = surface.view(frame.to_local(it.wo));
+        let bsdf = scene.bsdf(&it, &frame, path.share);
         if path.scatterings == 0 && scene.effects.color {
-            let color = bsdf.albedo();
+            let color = bsdf.albedo() * path.beta;
             sample.color = to_film(color);
             sample.denoising_albedo += color.sum();
         }
@@ -146,7 +151,7 @@ pub fn trace(
         if !scene.effects.light {
             break;
         }
-        if !surface.is_delta_only() {
+        if !bsdf.is_delta_only() {
             for k in 0..light_samples {
                 let sampler = if light_samples > 1 { sampler.part(k, light_samples) } else { *sampler };
                 add_light(scene, &sampler, &path, &shading, light_samples as f32, &mut sample);
@@ -170,8 +175,8 @@ pub fn trace(
 enum Met<'a> {
     /// A stretch between two distances.
     Stretch([f32; 2]),
-    /// A surface and its opacity, whether the path then passes it or not.
-    Surface(&'a Interaction, f32),
+    /// A surface and how much of it is there, whether the path then passes it or not.
+    Surface(&'a Interaction, Coverage),
 }
 
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
@@ -198,11 +203,16 @@ fn next_surface(
             path.beta *= transmitted(&path.media, hit.t);
         }
         path.cone.width = path.cone.at(hit.t);
-        let opacity = if scene.effects.cutouts { scene.opacity(&it) } else { 1.0 };
-        visit(path, Met::Surface(&it, opacity));
-        if opacity == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < opacity {
+        let coverage = if scene.effects.cutouts { scene.coverage(&it) } else { Coverage::OPAQUE };
+        visit(path, Met::Surface(&it, coverage));
+        let Coverage { opacity, passes, p_stop } = coverage;
+        if p_stop == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < p_stop {
+            path.alpha *= coverage.alpha() / p_stop;
+            path.share = opacity / p_stop;
             return Some(it);
         }
+        path.beta *= passes * (1.0 / (1.0 - p_stop));
+        path.alpha *= (1.0 - coverage.alpha()) / (1.0 - p_stop);
         path.state.transparent = path.state.transparent.saturating_add(1);
         path.ray = it.continued(&path.ray, hit.t);
     }
@@ -228,7 +238,7 @@ pub fn first_surface(
     let mut path = Path::from_camera(ray, cone);
     let mut described = !scene.effects.geometry;
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
-        Met::Surface(it, opacity) if !described => described = describe_shape(scene, it, opacity, sample),
+        Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),
         _ => {}
     });
     surface.filter(|it| !scene.is_holdout(it)).map(|it| (it, path.vertex))
@@ -260,7 +270,7 @@ fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSa
 /// What lies behind everything.
 fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
     if path.scatterings == 0 && scene.background_visible {
-        sample.alpha = 1.0;
+        sample.alpha = path.alpha;
     }
     for (i, light, le) in scene.background(path.ray.d) {
         match &path.last {
@@ -332,9 +342,6 @@ fn scatter(
     let u = sampler.get_2d(Dimension::at_bounce(path.vertex, Decision::BsdfDirection));
     let Some(scattered) = shading.bsdf.sample(uc, u) else { return false };
     let wi = shading.frame.to_world(scattered.wi);
-    if leaks(it, wi, scattered.wi.z) {
-        return false;
-    }
     path.ray = it.spawn(wi);
     path.start = it.p;
     path.travelled = 0.0;

@@ -25,7 +25,7 @@ pub struct Found<'a> {
 
 impl Found<'_> {
     /// Share of it that arrives at the origin of `ray`.
-    pub fn visibility(&self, scene: &Scene, ray: &Ray) -> f32 {
+    pub fn visibility(&self, scene: &Scene, ray: &Ray) -> Rgb {
         // Ends before the emitter, which may itself be something that stops light.
         let t_max = self.dist * (1.0 - 1e-5);
         scene.transmittance(&Ray { t_max, ..*ray }, self.rules.shadow)
@@ -71,7 +71,7 @@ pub fn emitters_along(
         cone.width = cone.at(hit.t);
         let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
         if asked(rules) {
-            let le = scene.emission(&it) * (scene.opacity(&it) * mesh_weight(scene, last, &it));
+            let le = scene.emission(&it) * (scene.coverage(&it).opacity * mesh_weight(scene, last, &it));
             visit(Found { le, dist: travelled, rules });
         }
         rest = it.continued(&rest, hit.t);

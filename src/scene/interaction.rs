@@ -1,5 +1,6 @@
 //! A point where a ray meets a surface.
 
+use super::material::NormalInput;
 use super::{Instance, PathState, RayCone, Scene};
 use crate::bvh::Hit;
 use crate::math::{DVec3, Frame, Ray, Vec3, sqr};
@@ -87,18 +88,8 @@ impl Scene {
     /// is one.
     pub fn shading_frame(&self, it: &Interaction) -> Frame {
         let material = &self.materials[it.material as usize];
-        let instance = &self.instances[it.instance as usize];
-        let mut n = it.ns;
+        let mut n = material.normal.as_ref().map_or(it.ns, |map| self.mapped_normal(it, map));
         let tangent = tangent_at(self, it);
-        if let Some(map) = &material.normal
-            && let Some((tangent, sign)) = tangent
-        {
-            let frame = Frame::from_z_and_tangent(n, tangent);
-            let sign = if instance.mirrored { -sign } else { sign };
-            let [x, y, z, _] = self.look_up(map.input, it);
-            let local = Vec3::new((2.0 * x - 1.0) * map.scale, (2.0 * y - 1.0) * map.scale, 2.0 * z - 1.0);
-            n = (frame.s * local.x + frame.t * (local.y * sign) + n * local.z).normalize_or(n);
-        }
         if !it.front {
             n = -n;
         }
@@ -112,6 +103,22 @@ impl Scene {
             None => Frame::from_z_facing(n, &self.camera.view().frame()),
         }
     }
+
+    /// The shading normal on the side of `ng` by a tangent-space map.
+    pub(super) fn mapped_normal(&self, it: &Interaction, map: &NormalInput) -> Vec3 {
+        let n = it.ns;
+        let Some((tangent, _)) = tangent_at(self, it) else { return n };
+        let frame = Frame::from_z_and_tangent(n, tangent);
+        let [x, y, z, _] = self.look_up(map.input, it);
+        let local = Vec3::new((2.0 * x - 1.0) * map.scale, (2.0 * y - 1.0) * map.scale, 2.0 * z - 1.0);
+        (frame.s * local.x + frame.t * (local.y * self.handedness(it)) + n * local.z).normalize_or(n)
+    }
+
+    /// −1 where the axes of the UVs are mirrored on the surface.
+    pub(super) fn handedness(&self, it: &Interaction) -> f32 {
+        let sign = tangent_at(self, it).map_or(1.0, |(_, sign)| sign);
+        if self.instances[it.instance as usize].mirrored { -sign } else { sign }
+    }
 }
 
 fn tangent_at(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
@@ -123,7 +130,7 @@ fn tangent_at(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
 /// `n`, bent as little as needed for `wo` to be above its horizon; both `n` and the geometric
 /// normal `ng` are meant to be on the side of `wo`. Interpolated and mapped normals near the
 /// silhouette break that, and would shade black.
-fn facing(n: Vec3, ng: Vec3, wo: Vec3) -> Vec3 {
+pub(super) fn facing(n: Vec3, ng: Vec3, wo: Vec3) -> Vec3 {
     const MIN_COS: f32 = 1e-3;
     let cos = n.dot(wo);
     // Where the surface itself is seen at a grazing angle the shading normal may be so, too.

@@ -1,10 +1,12 @@
 //! Materials as they are traced: constants, texture lookups and values of graphs, evaluated at a point.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
-use super::spot::{Around, MOST_OUTPUTS, Spot};
+use super::shading::Bends;
+use super::spot::{Around, Spot, Values};
 use super::{Interaction, Scene};
-use crate::bsdf::Surface;
+use crate::bsdf::Closure;
 use crate::desc::graph::Value;
 use crate::math::Rgb;
 use crate::texture::TextureRef;
@@ -50,6 +52,8 @@ pub struct Programs {
     pub surface: Option<Program>,
     /// The shading normal, world space.
     pub normal: Option<Program>,
+    /// Normals and tangents of single lobes, world space.
+    pub bends: Option<Program>,
     /// Baked occlusion.
     pub occlusion: Option<Program>,
 }
@@ -57,7 +61,8 @@ pub struct Programs {
 impl Programs {
     /// True where there is one at all.
     pub fn any(&self) -> bool {
-        [&self.opacity, &self.emission, &self.surface, &self.normal, &self.occlusion].iter().any(|p| p.is_some())
+        let Self { opacity, emission, surface, normal, bends, occlusion } = self;
+        [opacity, emission, surface, normal, bends, occlusion].iter().any(|program| program.is_some())
     }
 }
 
@@ -92,36 +97,39 @@ impl Opacity {
     }
 }
 
+/// One term of what scatters.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its share.
+    pub weight: ScalarInput,
+    /// What it is.
+    pub closure: Closure<ColorInput, ScalarInput>,
+    /// The same where it is that everywhere.
+    pub fixed: Option<Closure>,
+    /// Normals and tangents of its own.
+    pub bends: Option<Box<Bends>>,
+}
+
 /// A surface.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Every distinct texture that the material looks up, but for normal maps.
     pub inputs: Vec<TextureRef>,
-    /// Diffuse albedo or metallic reflectance.
-    pub base_color: ColorInput,
+    /// What scatters.
+    pub parts: Vec<Part>,
     /// Alpha.
     pub alpha: ScalarInput,
     /// How alpha is read.
     pub opacity: Opacity,
-    /// 0 dielectric, 1 metal.
-    pub metallic: ScalarInput,
-    /// Perceptual roughness.
-    pub roughness: ScalarInput,
-    /// Index of refraction.
-    pub ior: f32,
-    /// Weight of the dielectric's reflection.
-    pub specular: ScalarInput,
-    /// Its tint.
-    pub specular_color: ColorInput,
-    /// Share of what enters that is refracted.
-    pub transmission: ScalarInput,
+    /// What passes unscattered on top of what the surface does; `None` for nothing.
+    pub transparency: Option<ColorInput>,
     /// No inside: light passes straight on.
     pub thin: bool,
     /// Absorption of the inside per metre; black for none.
     pub absorption: Rgb,
-    /// Emitted radiance.
+    /// Emitted radiance; of an unlit material its color.
     pub emission: ColorInput,
-    /// True where nothing scatters and the base colour is emitted.
+    /// True where nothing scatters and the emission is what is seen.
     pub unlit: bool,
     /// The camera sees a hole in the picture instead.
     pub holdout: bool,
@@ -133,32 +141,50 @@ pub struct Material {
     pub programs: Option<Arc<Programs>>,
 }
 
-/// What a program gives at a hit, where it was run.
-type Values = Option<[Value; MOST_OUTPUTS]>;
+/// How much of a surface is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coverage {
+    /// Factor of what it emits and scatters.
+    pub opacity: f32,
+    /// What passes unscattered.
+    pub passes: Rgb,
+    /// Probability with which paths stop at it.
+    pub p_stop: f32,
+}
+
+impl Coverage {
+    /// Nothing passes.
+    pub const OPAQUE: Self = Self { opacity: 1.0, passes: Rgb::BLACK, p_stop: 1.0 };
+
+    /// Its part of the picture's alpha.
+    pub fn alpha(&self) -> f32 {
+        1.0 - self.passes.mean().clamp(0.0, 1.0)
+    }
+}
 
 /// A material's lookups at one point, each texture read at most once.
-struct Lookups<'a> {
+pub(super) struct Lookups<'a> {
     scene: &'a Scene,
     material: &'a Material,
     it: &'a Interaction,
-    last: Option<(u8, [f32; 4])>,
+    last: Cell<Option<(u8, [f32; 4])>>,
     /// Values of the program that answers for these inputs.
     values: &'a [Value],
 }
 
 impl Lookups<'_> {
-    fn texel(&mut self, input: u8) -> [f32; 4] {
-        if let Some((last, texel)) = self.last
+    pub fn texel(&self, input: u8) -> [f32; 4] {
+        if let Some((last, texel)) = self.last.get()
             && last == input
         {
             return texel;
         }
         let texel = self.scene.look_up(self.material.inputs[usize::from(input)], self.it);
-        self.last = Some((input, texel));
+        self.last.set(Some((input, texel)));
         texel
     }
 
-    fn color(&mut self, input: &ColorInput) -> Rgb {
+    pub fn color(&self, input: &ColorInput) -> Rgb {
         match input.varying {
             Varying::No => input.factor,
             Varying::Texture(texture, _) => {
@@ -172,7 +198,7 @@ impl Lookups<'_> {
         }
     }
 
-    fn scalar(&mut self, input: &ScalarInput) -> f32 {
+    pub fn scalar(&self, input: &ScalarInput) -> f32 {
         match input.varying {
             Varying::No => input.factor,
             Varying::Texture(texture, channel) => input.factor * self.texel(texture)[usize::from(channel)],
@@ -227,76 +253,84 @@ impl Scene {
 
     /// `program` says which of the material's answers for the inputs that are looked up, `values` is where
     /// what it gives is kept.
-    fn lookups<'a>(
+    pub(super) fn lookups<'a>(
         &'a self,
         it: &'a Interaction,
         program: fn(&Programs) -> Option<&Program>,
-        values: &'a mut Values,
+        values: &'a mut Option<Values>,
     ) -> Lookups<'a> {
         let material = self.material(it);
         let values = match &material.programs {
             None => &[],
             Some(programs) => self.run(it, program(programs), values),
         };
-        Lookups { scene: self, material, it, last: None, values }
+        Lookups { scene: self, material, it, last: Cell::new(None), values }
     }
 
     // Out of line, so that materials without graphs have no part in it.
     #[cold]
-    fn run<'a>(&self, it: &Interaction, program: Option<&Program>, values: &'a mut Values) -> &'a [Value] {
+    pub(super) fn run<'a>(
+        &self,
+        it: &Interaction,
+        program: Option<&Program>,
+        values: &'a mut Option<Values>,
+    ) -> &'a [Value] {
         match program {
             Some(program) => values.insert(self.spot(it).run(program)),
             None => &[],
         }
     }
 
-    fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
+    pub(super) fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
         let instance = &self.instances[it.instance as usize];
         self.shape(instance).color(it.primitive, it.at).or(instance.color)
     }
 
-    /// Share of light that the surface stops or scatters at `it`; the rest passes.
-    pub fn opacity(&self, it: &Interaction) -> f32 {
+    /// How much of the surface is there at `it`.
+    pub fn coverage(&self, it: &Interaction) -> Coverage {
         let material = self.material(it);
-        let footprint = match material.opacity {
-            Opacity::Opaque => return 1.0,
+        let footprint = match (material.opacity, &material.transparency) {
+            (Opacity::Opaque, None) => return Coverage::OPAQUE,
             // The threshold of a mean is not the mean of the thresholds: always the finest level.
-            Opacity::Mask(_) => 0.0,
-            Opacity::Blend => it.footprint,
+            (Opacity::Mask(_), _) => 0.0,
+            _ => it.footprint,
         };
         let (it, mut values) = (&Interaction { footprint, ..*it }, None);
-        let alpha = self.lookups(it, |programs| programs.opacity.as_ref(), &mut values).scalar(&material.alpha);
-        material.opacity.of(alpha * self.vertex_color(it).map_or(1.0, |c| c[3]))
+        let lookups = self.lookups(it, |programs| programs.opacity.as_ref(), &mut values);
+        let opacity = match material.opacity {
+            Opacity::Opaque => 1.0,
+            by => by.of(lookups.scalar(&material.alpha) * self.vertex_color(it).map_or(1.0, |c| c[3])),
+        };
+        let Some(transparency) = &material.transparency else {
+            return Coverage { opacity, passes: Rgb::splat(1.0 - opacity), p_stop: opacity };
+        };
+        let passes = lookups.color(transparency).map(|c| c.max(0.0)) * opacity + Rgb::splat(1.0 - opacity);
+        let p_stop = (1.0 - passes.mean()).clamp(0.0, 1.0);
+        // What is added to something that lets all light pass is still there.
+        let p_stop = match material.scatters() {
+            true if p_stop == 0.0 && opacity > 0.0 => 0.5,
+            true => p_stop,
+            false if passes.is_black() => 1.0,
+            false => 0.0,
+        };
+        Coverage { opacity, passes, p_stop }
+    }
+
+    /// Share of the surface that is there at `it`; see [`Coverage::alpha`].
+    pub fn alpha(&self, it: &Interaction) -> f32 {
+        self.coverage(it).alpha()
     }
 
     /// Radiance that the surface emits at `it`.
     pub fn emission(&self, it: &Interaction) -> Rgb {
         let material = self.material(it);
         let mut values = None;
-        let mut lookups = self.lookups(it, |programs| programs.emission.as_ref(), &mut values);
-        if !material.unlit {
-            let le = lookups.color(&material.emission);
-            return if material.programs.is_some() { le.map(|c| c.max(0.0)) } else { le };
-        }
-        let color = lookups.color(&material.base_color);
-        self.vertex_color(it).map_or(color, |[r, g, b, _]| color * Rgb::new(r, g, b))
-    }
-
-    /// What scatters at `it`.
-    pub fn surface(&self, it: &Interaction) -> Surface {
-        let material = self.material(it);
-        let mut values = None;
-        let mut lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
-        let tint = self.vertex_color(it).map_or(Rgb::WHITE, |[r, g, b, _]| Rgb::new(r, g, b));
-        Surface {
-            base_color: (lookups.color(&material.base_color) * tint).map(|c| c.clamp(0.0, 1.0)),
-            metallic: lookups.scalar(&material.metallic).clamp(0.0, 1.0),
-            roughness: lookups.scalar(&material.roughness).clamp(0.0, 1.0),
-            ior: material.ior,
-            specular: lookups.scalar(&material.specular).clamp(0.0, 1.0),
-            specular_color: lookups.color(&material.specular_color).map(|c| c.max(0.0)),
-            transmission: lookups.scalar(&material.transmission).clamp(0.0, 1.0),
-            thin: material.thin,
+        let lookups = self.lookups(it, |programs| programs.emission.as_ref(), &mut values);
+        let le = lookups.color(&material.emission);
+        match self.vertex_color(it) {
+            Some([r, g, b, _]) if material.unlit => le * Rgb::new(r, g, b),
+            _ if material.programs.is_some() => le.map(|c| c.max(0.0)),
+            _ => le,
         }
     }
 
@@ -304,7 +338,7 @@ impl Scene {
     pub fn occlusion(&self, it: &Interaction) -> f32 {
         let Some(occlusion) = &self.material(it).occlusion else { return 1.0 };
         let mut values = None;
-        let mut lookups = self.lookups(it, |programs| programs.occlusion.as_ref(), &mut values);
+        let lookups = self.lookups(it, |programs| programs.occlusion.as_ref(), &mut values);
         let value = lookups.scalar(&ScalarInput { factor: 1.0, ..*occlusion });
         1.0 + occlusion.factor * (value - 1.0)
     }
@@ -325,6 +359,11 @@ impl Material {
 
     /// True where some light may pass it unscattered.
     pub fn is_cutout(&self) -> bool {
-        self.opacity != Opacity::Opaque
+        self.opacity != Opacity::Opaque || self.transparency.is_some()
+    }
+
+    /// True where some part of it scatters.
+    fn scatters(&self) -> bool {
+        !self.parts.is_empty()
     }
 }

@@ -1,5 +1,7 @@
 //! A hit as graphs see it: world and object space in `f64`, worked out as far as a program asks.
 
+use smallvec::SmallVec;
+
 use super::asked::{OfMesh, OfObject};
 use super::interaction::Interaction;
 use super::{Asked, Instance};
@@ -10,8 +12,8 @@ use crate::shape::{Mesh, Shape};
 use crate::texture::graph::{Beside, HERE, Hit, Program};
 use crate::texture::{Texture, TextureRef};
 
-/// Values that one program can give.
-pub const MOST_OUTPUTS: usize = 8;
+/// What a program gives.
+pub type Values = SmallVec<[Value; 8]>;
 
 /// What surrounds hits on one object.
 #[derive(Clone, Copy)]
@@ -50,8 +52,8 @@ struct Place {
 
 impl Spot<'_> {
     /// The values of `program` here.
-    pub fn run(&self, program: &Program) -> [Value; MOST_OUTPUTS] {
-        let mut values = [[0.0; 4]; MOST_OUTPUTS];
+    pub fn run(&self, program: &Program) -> Values {
+        let mut values = Values::from_elem([0.0; 4], program.outputs());
         program.run(self, self.around.textures, &mut values);
         values
     }

@@ -30,21 +30,21 @@ impl Scene {
         self.bvh.closest_hit(ray, mask)
     }
 
-    /// Share of light that passes along `ray`: 0 behind an opaque surface, the product of
-    /// `1 − opacity` through cut-outs and blends; only what `shadow` names stops it.
-    pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> f32 {
+    /// Share of light that passes along `ray`: black behind an opaque surface, the product of what
+    /// passes through cut-outs and blends; only what `shadow` names stops it.
+    pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> Rgb {
         let (opaque, cutout) = match shadow {
             Shadow::Cast => (mask::SHADOW, mask::SHADOW_CUTOUT),
-            Shadow::Off => return 1.0,
+            Shadow::Off => return Rgb::WHITE,
             Shadow::Only(classes) => (mask::linked(classes), mask::linked_cutout(classes)),
         };
         if self.bvh.any_hit(ray, opaque) {
-            return 0.0;
+            return Rgb::BLACK;
         }
         if !self.effects.cutouts {
-            return 1.0;
+            return Rgb::WHITE;
         }
-        let mut left = 1.0;
+        let mut left = Rgb::WHITE;
         let mut ray = *ray;
         for _ in 0..MAX_TRANSPARENT {
             let Some(hit) = self.closest_hit(&ray, cutout) else { return left };
@@ -52,13 +52,13 @@ impl Scene {
             if self.effects.light_path {
                 it.path = PathState { length: hit.t, ..PathState::SHADOW };
             }
-            left *= 1.0 - self.opacity(&it);
-            if left == 0.0 {
-                return 0.0;
+            left *= self.coverage(&it).passes;
+            if left.is_black() {
+                return left;
             }
             ray = it.continued(&ray, hit.t);
         }
-        0.0
+        Rgb::BLACK
     }
 
     /// The background lights that shine along the unit direction `d`, with their index and radiance.

@@ -103,9 +103,9 @@ fn every_material_extension() {
     let film = m.iridescence.unwrap();
     assert_eq!((channel(film.weight), film.ior), ((0.6, Channel::R), 1.4));
     assert_eq!((film.thickness_min, film.thickness_max), (50.0, 500.0));
-    assert_eq!(film.thickness_texture.unwrap().1, Channel::G);
+    assert_eq!(film.thickness.texture.unwrap().1, Channel::G);
     let anisotropy = m.anisotropy.unwrap();
-    assert_eq!((anisotropy.strength, anisotropy.rotation), (0.5, 1.25));
+    assert_eq!((anisotropy.strength.factor, anisotropy.rotation.factor), (0.5, 1.25));
     let space = |texture: u32| scene.images[scene.textures[texture as usize].image as usize].color_space;
     for texture in [sheen.color.texture, m.specular_color.texture] {
         assert_eq!(space(texture.unwrap().texture), ColorSpace::Srgb);

@@ -4,8 +4,8 @@ use super::document::label;
 use super::json::{Material, MetallicRoughness, SpecularGlossiness, TextureInfo};
 use super::texture::Lookup;
 use crate::desc::{
-    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, ColorSpace, IridescenceDesc, MaterialDesc, NormalInput,
-    ScalarInput, SheenDesc, VolumeDesc,
+    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, ColorSpace, IridescenceDesc, MaterialDesc,
+    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
 };
 use crate::error::{Place, Warnings};
 
@@ -135,6 +135,7 @@ impl Converter<'_, '_> {
                 "clearcoat roughness",
             ),
             ior: 1.5,
+            tint: ColorInput::constant([1.0; 3]),
             normal: self.normal(coat.clearcoat_normal_texture.as_ref()),
         });
         material.sheen = x.sheen.as_ref().map(|sheen| SheenDesc {
@@ -151,15 +152,19 @@ impl Converter<'_, '_> {
             ior: film.iridescence_ior.max(1.0),
             thickness_min: film.iridescence_thickness_minimum.max(0.0),
             thickness_max: film.iridescence_thickness_maximum.max(0.0),
-            thickness_texture: self
-                .textures
-                .get(film.iridescence_thickness_texture.as_ref(), ColorSpace::Linear)
-                .map(|texture| (texture, Channel::G)),
+            thickness: self.scalar(
+                1.0,
+                film.iridescence_thickness_texture.as_ref(),
+                Channel::G,
+                "iridescence thickness",
+            ),
         });
         material.anisotropy = x.anisotropy.as_ref().map(|a| AnisotropyDesc {
-            strength: self.unit(a.anisotropy_strength, "anisotropy strength"),
-            rotation: a.anisotropy_rotation,
+            strength: ScalarInput::constant(self.unit(a.anisotropy_strength, "anisotropy strength")),
+            rotation: ScalarInput::constant(a.anisotropy_rotation),
             texture: self.textures.get(a.anisotropy_texture.as_ref(), ColorSpace::Linear),
+            tangent: None,
+            law: AnisotropyLaw::Gltf,
         });
     }
 

@@ -378,6 +378,6 @@ impl Builder<'_> {
 fn tangent_uv_set(material: &MaterialDesc) -> Option<u32> {
     let coat = material.coat.and_then(|coat| coat.normal);
     let normal = material.normal.or(coat).and_then(|normal| normal.texture()).map(|texture| texture.uv_set);
-    let anisotropy = material.anisotropy.filter(|a| a.strength > 0.0);
+    let anisotropy = material.anisotropy.filter(|a| a.strength.factor > 0.0);
     normal.or(anisotropy.map(|a| a.texture.map_or(0, |texture| texture.uv_set)))
 }

@@ -1,5 +1,7 @@
 //! Materials with their constants folded, and the textures and programs that are left.
 
+mod parts;
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -149,6 +151,8 @@ struct Inputs<'m> {
     textures: Vec<TextureRef>,
     /// Values that the program in the making has to give.
     values: Vec<ValueId>,
+    /// Values that the program for normals and tangents has to give.
+    bends: Vec<ValueId>,
 }
 
 impl Inputs<'_> {
@@ -162,6 +166,16 @@ impl Inputs<'_> {
         let texel = graph.image(texture.texture, uv);
         let texel = place.map_or(texel, |place| graph.place(texel, place));
         graph.multiply(value, texel)
+    }
+}
+
+/// Where a channel is in a texel.
+fn place(channel: Channel) -> u8 {
+    match channel {
+        Channel::R => 0,
+        Channel::G => 1,
+        Channel::B => 2,
+        Channel::A => 3,
     }
 }
 
@@ -221,12 +235,6 @@ impl Builder<'_> {
         if factor == 0.0 {
             return constant(factor);
         }
-        let place = |channel: Channel| match channel {
-            Channel::R => 0_u8,
-            Channel::G => 1,
-            Channel::B => 2,
-            Channel::A => 3,
-        };
         let known = input.texture.map(|(texture, channel)| (texture, place(channel), self.textures.constant(&texture)));
         let (factor, texture) = match known {
             Some((_, place, Some(texel))) => (factor * texel[usize::from(place)], None),
@@ -283,27 +291,24 @@ impl Builder<'_> {
         mended.tell_at(&desc.place, warnings);
         let volume = desc.volume.filter(|v| v.thickness.factor > 0.0);
         let graph = Cow::Borrowed(&desc.graph);
-        let inputs = &mut Inputs { desc, graph, textures: Vec::new(), values: Vec::new() };
+        let inputs = &mut Inputs { desc, graph, textures: Vec::new(), values: Vec::new(), bends: Vec::new() };
         // One question after the other; each has a program of its own. What scatters:
-        let base_color = self.color(inputs, &desc.base_color);
-        let color_alone = inputs.values.clone();
-        let metallic = self.scalar(inputs, &desc.metallic);
-        let roughness = self.scalar(inputs, &desc.roughness);
-        let specular = self.scalar(inputs, &desc.specular);
-        let specular_color = self.color(inputs, &desc.specular_color);
-        let transmission = self.scalar(inputs, &desc.transmission);
+        let parts = if desc.unlit { Vec::new() } else { self.parts(inputs) };
         let surface = self.program(inputs);
+        inputs.values = std::mem::take(&mut inputs.bends);
+        let bends = self.program(inputs);
         // What passes:
         let alpha = self.scalar(inputs, &desc.alpha);
         let opaque = effects::is_opaque(self.desc, desc)
             || (alpha.varying == Varying::No
                 && effects::is_opaque_at(self.desc, desc.alpha_mode, f64::from(alpha.factor)));
-        let opacity = self.program(inputs).filter(|_| !opaque);
-        // What is emitted; of an unlit surface its color:
-        let emission = self.color(inputs, &emission);
-        if desc.unlit {
-            inputs.values = color_alone;
+        if opaque {
+            inputs.values.clear();
         }
+        let transparency = Some(self.color(inputs, &desc.transparency)).filter(|t| !t.factor.is_black());
+        let opacity = self.program(inputs);
+        // What is emitted; of an unlit surface its color:
+        let emission = self.color(inputs, if desc.unlit { &desc.base_color } else { &emission });
         let light = self.program(inputs);
         // Which way it faces:
         let normal_map = desc.normal.and_then(|normal| self.normal(inputs, normal));
@@ -314,9 +319,9 @@ impl Builder<'_> {
             .filter(|o| self.settings.occlusion_maps && o.factor != 0.0)
             .filter(|o| o.texture.is_some() || o.graph.is_some())
             .map(|o| self.scalar(inputs, &o));
-        let programs = Programs { opacity, emission: light, surface, normal, occlusion: self.program(inputs) };
+        let programs = Programs { opacity, emission: light, surface, normal, bends, occlusion: self.program(inputs) };
         Material {
-            base_color,
+            parts,
             alpha,
             opacity: match desc.alpha_mode {
                 _ if opaque => Opacity::Opaque,
@@ -324,12 +329,7 @@ impl Builder<'_> {
                 AlphaMode::Mask { cutoff } => Opacity::Mask(cutoff as f32),
                 AlphaMode::Blend => Opacity::Blend,
             },
-            metallic,
-            roughness,
-            ior: if desc.ior.is_finite() && desc.ior > 0.0 { desc.ior as f32 } else { 1.5 },
-            specular,
-            specular_color,
-            transmission,
+            transparency,
             thin: volume.is_none(),
             absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
             emission,
@@ -367,18 +367,7 @@ fn absorption(volume: &desc::VolumeDesc) -> Rgb {
 
 /// One warning for what a material asks and the engine doesn't compute yet.
 fn warn_of_effects_to_come(desc: &MaterialDesc, warnings: &mut Warnings) {
-    let missing: Vec<&str> = [
-        ("clear coat", desc.coat.as_ref().is_some_and(|c| c.weight.factor > 0.0)),
-        ("sheen", desc.sheen.as_ref().is_some_and(|s| s.color.factor.iter().any(|&c| c > 0.0))),
-        ("iridescence", desc.iridescence.as_ref().is_some_and(|i| i.weight.factor > 0.0)),
-        ("anisotropy", desc.anisotropy.is_some_and(|a| a.strength != 0.0)),
-        ("dispersion", desc.dispersion > 0.0),
-    ]
-    .into_iter()
-    .filter_map(|(name, there)| there.then_some(name))
-    .collect();
-    if !missing.is_empty() {
-        let what = format!("rendered without its {}: not computed yet", missing.join(", "));
-        warnings.push(&desc.place, what);
+    if desc.dispersion > 0.0 {
+        warnings.push(&desc.place, "rendered without its dispersion: not computed yet".to_string());
     }
 }

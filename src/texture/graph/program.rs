@@ -101,6 +101,11 @@ impl Program {
         self.steps.is_empty()
     }
 
+    /// How many values it gives.
+    pub fn outputs(&self) -> usize {
+        self.outputs.len()
+    }
+
     /// Its values at `hit`, in the order in which they were asked for, all of them finite. Programs with more
     /// than 256 values alive at once, which no tree of nodes that was made by hand needs, take their
     /// registers from the heap.

@@ -10,6 +10,7 @@ mod flow;
 mod input;
 mod lamp;
 mod math;
+mod principled;
 mod procedural;
 mod sky;
 mod surface;

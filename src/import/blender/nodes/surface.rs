@@ -1,46 +1,25 @@
-//! Surfaces: the sum of shaders as one layered material.
+//! Surfaces: the sum of shaders as the parts of one material.
 //!
-//! Every BSDF node is written in the parameters of the layered surface (`MaterialDesc`); a sum of several
-//! is the one whose parameters are their weighted mean, which is told. What is transparent lowers alpha,
-//! what emits is added.
+//! Each BSDF node is a lobe with its weight and its normal; the Principled BSDF alone is the material's own layered
+//! surface. What is transparent passes on top of that, what emits is added.
 
 use super::closure::{self, Part};
 use super::flow::{At, Flow};
 use super::lamp::emission;
-use crate::desc::graph::{Math, ValueId};
+use super::principled::{self, principled};
+use crate::desc::graph::{Leaf, ValueId};
 use crate::desc::{
-    AlphaMode, AnisotropyDesc, CoatDesc, ColorInput, MaterialDesc, NormalInput, ScalarInput, SheenDesc, VolumeDesc,
+    AlphaMode, AnisotropyDesc, AnisotropyLaw, ClosureDesc, ColorInput, FacetsDesc, IridescenceDesc, MaterialDesc,
+    NormalInput, PartDesc, ScalarInput, SheenDesc, VolumeDesc,
 };
 
-/// A BSDF in the parameters of the layered surface.
-#[derive(Clone, Copy)]
-struct Layered {
-    base_color: ValueId,
-    metallic: ValueId,
-    roughness: ValueId,
-    ior: ValueId,
-    specular: ValueId,
-    specular_color: ValueId,
-    transmission: ValueId,
-    coat: ValueId,
-    coat_roughness: ValueId,
-    coat_ior: ValueId,
-    sheen: ValueId,
-    sheen_roughness: ValueId,
-    anisotropy: ValueId,
-    anisotropy_rotation: ValueId,
-    normal: Option<ValueId>,
-    coat_normal: Option<ValueId>,
-}
-
-/// What one node does.
+/// What the nodes of a surface come to.
 #[derive(Default)]
-struct Meaning {
-    bsdf: Option<Layered>,
-    /// Share that passes unscattered, a number.
-    transparent: Option<ValueId>,
-    emission: Option<ValueId>,
-    /// The camera sees a hole.
+struct Sum {
+    parts: Vec<PartDesc>,
+    /// Colors.
+    transparent: Vec<ValueId>,
+    emitted: Vec<ValueId>,
     holdout: bool,
 }
 
@@ -53,259 +32,244 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
         },
         None => Vec::new(),
     };
-    let zero = flow.graph.number(0.0);
-    let (mut transparent, mut emitted, mut scattered, mut holdout) = (zero, zero, Vec::new(), false);
-    for part in parts {
-        let Meaning { bsdf, transparent: passes, emission, holdout: is_hole } = meaning(flow, part);
-        holdout |= is_hole;
-        if let Some(passes) = passes {
-            transparent = flow.graph.add(transparent, passes);
+    let mut material = match parts[..] {
+        [Part { weight, at }]
+            if at.node.r#type == "ShaderNodeBsdfPrincipled" && flow.graph.known(weight) == Some([1.0; 4]) =>
+        {
+            principled::alone(flow, at, base)
         }
-        if let Some(emission) = emission {
-            emitted = flow.graph.add(emitted, emission);
+        _ => {
+            let mut sum = Sum::default();
+            for part in parts {
+                add(flow, part, &mut sum);
+            }
+            mixed(flow, sum, base)
         }
-        if let Some(bsdf) = bsdf {
-            scattered.push((part.weight, bsdf));
-        }
-    }
-    let opaque = {
-        let one = flow.graph.number(1.0);
-        let rest = flow.graph.subtract(one, transparent);
-        flow.clamped(rest)
     };
-    // Alpha multiplies all that the surface does; emission was the whole's.
-    let emission = flow.graph.math(Math::Divide, &[emitted, opaque]);
-    if flow.graph.known(opaque).is_some_and(|o| o[0] == 0.0) && flow.graph.known(emitted) != Some([0.0; 4]) {
-        flow.warn("a surface that is wholly transparent and emits is not supported; its light is left out");
-    }
-    let black = black(flow);
-    let mixed = mixed(flow, &scattered).unwrap_or(black);
-    finish(flow, MaterialDesc { holdout, ..base }, mixed, opaque, emission)
+    material.graph = std::mem::take(&mut flow.graph);
+    material
 }
 
-/// The BSDF of the weighted mean of parameters; weights are relative.
-fn mixed(flow: &mut Flow<'_, '_>, scattered: &[(ValueId, Layered)]) -> Option<Layered> {
-    let (&(mut sum, mut mean), others) = scattered.split_first()?;
-    for &(weight, next) in others {
-        sum = flow.graph.add(sum, weight);
-        let share = flow.graph.math(Math::Divide, &[weight, sum]);
-        let mut mix = |a: ValueId, b: ValueId| flow.graph.mix(a, b, share);
-        mean = Layered {
-            base_color: mix(mean.base_color, next.base_color),
-            metallic: mix(mean.metallic, next.metallic),
-            roughness: mix(mean.roughness, next.roughness),
-            ior: mix(mean.ior, next.ior),
-            specular: mix(mean.specular, next.specular),
-            specular_color: mix(mean.specular_color, next.specular_color),
-            transmission: mix(mean.transmission, next.transmission),
-            coat: mix(mean.coat, next.coat),
-            coat_roughness: mix(mean.coat_roughness, next.coat_roughness),
-            coat_ior: mix(mean.coat_ior, next.coat_ior),
-            sheen: mix(mean.sheen, next.sheen),
-            sheen_roughness: mix(mean.sheen_roughness, next.sheen_roughness),
-            anisotropy: mix(mean.anisotropy, next.anisotropy),
-            anisotropy_rotation: mix(mean.anisotropy_rotation, next.anisotropy_rotation),
-            normal: mean.normal.or(next.normal),
-            coat_normal: mean.coat_normal.or(next.coat_normal),
-        };
-    }
-    if !others.is_empty() {
-        flow.warn(format!("{} BSDFs are mixed by their parameters, not by what they scatter", scattered.len()));
-    }
-    Some(mean)
-}
-
-/// A surface that scatters nothing.
-fn black(flow: &mut Flow<'_, '_>) -> Layered {
-    let [zero, half, one] = [0.0, 0.5, 1.0].map(|x| flow.graph.number(x));
-    let ior = flow.graph.number(1.5);
-    Layered {
-        base_color: zero,
-        metallic: zero,
-        roughness: half,
-        ior,
-        specular: zero,
-        specular_color: one,
-        transmission: zero,
-        coat: zero,
-        coat_roughness: zero,
-        coat_ior: ior,
-        sheen: zero,
-        sheen_roughness: half,
-        anisotropy: zero,
-        anisotropy_rotation: zero,
-        normal: None,
-        coat_normal: None,
+/// `base` with a sum of shaders.
+fn mixed(flow: &mut Flow<'_, '_>, sum: Sum, base: MaterialDesc) -> MaterialDesc {
+    let Sum { parts, transparent, emitted, holdout } = sum;
+    let mut total = |values: Vec<ValueId>| {
+        let zero = flow.graph.constant([0.0; 4]);
+        values.into_iter().fold(zero, |sum, value| flow.graph.add(sum, value))
+    };
+    let (transparent, emitted) = (total(transparent), total(emitted));
+    let black = ScalarInput::constant(0.0);
+    // Normals that are the same everywhere are the material's.
+    let normal = parts.first().and_then(|part| part.normal);
+    let shared = parts.iter().all(|part| part.normal == normal);
+    let parts = parts.into_iter().map(|part| PartDesc { normal: part.normal.filter(|_| !shared), ..part });
+    let parts: Vec<_> = parts.collect();
+    let transmits = parts.iter().any(|part| part.closure.transmits());
+    MaterialDesc {
+        // Without parts nothing scatters.
+        base_color: ColorInput::constant([0.0; 3]),
+        specular: black,
+        transparency: color(flow, transparent),
+        emission: color(flow, emitted),
+        normal: normal.filter(|_| shared),
+        volume: transmits.then(solid),
+        parts,
+        holdout,
+        ..base
     }
 }
 
-fn meaning<'a>(flow: &mut Flow<'a, '_>, part: Part<'a>) -> Meaning {
-    let Part { weight, at } = part;
-    let none = black(flow);
-    let one = flow.graph.number(1.0);
-    let normal = flow.is_linked(at, "Normal").then(|| flow.input(at, "Normal"));
-    let bsdf = match at.node.r#type.as_str() {
-        "ShaderNodeBsdfPrincipled" => return principled(flow, at, weight, none),
-        "ShaderNodeEmission" => {
-            let emission = emission(flow, at, weight);
-            return Meaning { emission: Some(emission), ..Meaning::default() };
+/// Adds what one shader does.
+fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum) {
+    let closure = match at.node.r#type.as_str() {
+        "ShaderNodeBsdfPrincipled" => {
+            let (layers, alpha, emission) = principled(flow, at);
+            let one = flow.graph.number(1.0);
+            let through = flow.graph.subtract(one, alpha);
+            sum.transparent.push(flow.graph.multiply(through, weight));
+            let weight = flow.graph.multiply(weight, alpha);
+            sum.emitted.push(flow.graph.multiply(emission, weight));
+            let normal = layers.normal;
+            let layers = MaterialDesc { normal: None, ..layers };
+            let closure = ClosureDesc::Layered(Box::new(layers));
+            sum.parts.push(PartDesc { weight: scalar(flow, weight), normal, closure });
+            return;
         }
+        "ShaderNodeEmission" => return sum.emitted.push(emission(flow, at, weight)),
         "ShaderNodeBsdfTransparent" => {
             let color = flow.input(at, "Color");
-            let share = flow.graph.luminance(color);
-            if flow.graph.known(color).is_none_or(|c| c[0] != c[1] || c[1] != c[2]) {
-                flow.warn("colored transparency is rendered gray");
-            }
-            let share = flow.graph.multiply(share, weight);
-            return Meaning { transparent: Some(share), ..Meaning::default() };
+            return sum.transparent.push(flow.graph.multiply(color, weight));
         }
         "ShaderNodeHoldout" => {
             if flow.graph.known(weight) == Some([1.0; 4]) {
-                return Meaning { holdout: true, ..Meaning::default() };
+                sum.holdout = true;
+                return;
             }
             flow.warn("a Holdout that is mixed with others is rendered as transparent, which shows what lies behind");
-            return Meaning { transparent: Some(weight), ..Meaning::default() };
+            return sum.transparent.push(weight);
         }
-        "ShaderNodeBsdfDiffuse" => Layered { base_color: flow.input(at, "Color"), roughness: one, ..none },
-        "ShaderNodeBsdfGlossy" | "ShaderNodeBsdfAnisotropic" | "ShaderNodeBsdfMetallic" => {
-            let color = if at.node.input("Color").is_some() { "Color" } else { "Base Color" };
-            let base_color = flow.input(at, color);
-            let roughness = flow.input(at, "Roughness");
-            Layered { base_color, metallic: one, roughness, ..none }
+        "ShaderNodeBsdfDiffuse" => {
+            ClosureDesc::Diffuse { color: input(flow, at, "Color"), roughness: number(flow, at, "Roughness") }
         }
-        "ShaderNodeBsdfGlass" | "ShaderNodeBsdfRefraction" => {
-            let base_color = squared(flow, at);
-            let roughness = flow.input(at, "Roughness");
-            let ior = flow.input(at, "IOR");
-            let specular = if at.node.r#type == "ShaderNodeBsdfGlass" { one } else { none.specular };
-            Layered { base_color, roughness, ior, specular, transmission: one, ..none }
-        }
+        "ShaderNodeBsdfTranslucent" => ClosureDesc::Translucent { color: input(flow, at, "Color") },
+        "ShaderNodeBsdfGlossy" | "ShaderNodeBsdfAnisotropic" => glossy(flow, at),
+        "ShaderNodeBsdfMetallic" => metallic(flow, at),
+        "ShaderNodeBsdfGlass" => ClosureDesc::Glass {
+            color: input(flow, at, "Color"),
+            ior: number(flow, at, "IOR"),
+            facets: facets(flow, at, None),
+            film: film(flow, at),
+        },
+        "ShaderNodeBsdfRefraction" => ClosureDesc::Refraction {
+            color: input(flow, at, "Color"),
+            ior: number(flow, at, "IOR"),
+            facets: facets(flow, at, None),
+        },
         "ShaderNodeBsdfSheen" => {
-            let color = flow.input(at, "Color");
-            Layered { sheen: color, sheen_roughness: flow.input(at, "Roughness"), ..none }
+            if at.node.text("distribution") == "ASHIKHMIN" {
+                flow.warn("Ashikhmin's sheen is rendered as that of microfibers");
+            }
+            ClosureDesc::Sheen(SheenDesc { color: input(flow, at, "Color"), roughness: number(flow, at, "Roughness") })
         }
-        kind @ ("ShaderNodeBsdfTranslucent" | "ShaderNodeSubsurfaceScattering" | "ShaderNodeBsdfToon") => {
-            flow.warn(format!("{} is rendered as a diffuse surface", &kind["ShaderNode".len()..]));
-            Layered { base_color: flow.input(at, "Color"), roughness: one, ..none }
+        "ShaderNodeBsdfToon" => ClosureDesc::Toon {
+            color: input(flow, at, "Color"),
+            size: number(flow, at, "Size"),
+            smooth: number(flow, at, "Smooth"),
+            glossy: at.node.text("component") == "GLOSSY",
+        },
+        "ShaderNodeSubsurfaceScattering" => {
+            flow.warn("Subsurface Scattering is rendered as a diffuse surface");
+            ClosureDesc::Diffuse { color: input(flow, at, "Color"), roughness: ScalarInput::constant(0.0) }
         }
         kind => {
-            flow.warn(format!("the shader \"{}\" ({kind}) is not supported; it is black", at.node.name));
-            return Meaning::default();
+            return flow.warn(format!("the shader \"{}\" ({kind}) is not supported; it is black", at.node.name));
         }
     };
-    Meaning { bsdf: Some(Layered { normal, ..bsdf }), ..Meaning::default() }
+    let normal = normal(flow, at, "Normal");
+    sum.parts.push(PartDesc { weight: scalar(flow, weight), normal, closure });
 }
 
-/// A color that the layered surface, which takes its root at each boundary, tints by as the Glass node
-/// does.
-fn squared<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ValueId {
-    let color = flow.input(at, "Color");
-    flow.graph.multiply(color, color)
+fn glossy<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ClosureDesc {
+    let color = input(flow, at, "Color");
+    let anisotropy = anisotropy(flow, at, "Anisotropy", "Rotation", AnisotropyLaw::Glossy);
+    ClosureDesc::Glossy { color, facets: facets(flow, at, anisotropy) }
 }
 
-fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, weight: ValueId, none: Layered) -> Meaning {
-    let value = |flow: &mut Flow<'a, '_>, name: &str| flow.input(at, name);
-    let level = value(flow, "Specular IOR Level");
-    let tint = value(flow, "Specular Tint");
-    let double = flow.graph.scale(level, 2.0);
-    let sheen_tint = value(flow, "Sheen Tint");
-    let sheen = value(flow, "Sheen Weight");
-    let one = flow.graph.number(1.0);
-    let no_specular = flow.graph.known(level).is_some_and(|level| level[0] == 0.0);
-    let bsdf = Layered {
-        base_color: value(flow, "Base Color"),
-        metallic: value(flow, "Metallic"),
-        roughness: value(flow, "Roughness"),
-        ior: value(flow, "IOR"),
-        specular: if no_specular { none.specular } else { one },
-        specular_color: flow.graph.multiply(tint, double),
-        transmission: value(flow, "Transmission Weight"),
-        coat: value(flow, "Coat Weight"),
-        coat_roughness: value(flow, "Coat Roughness"),
-        coat_ior: flow.input_or(at, "Coat IOR", 1.5),
-        sheen: flow.graph.multiply(sheen, sheen_tint),
-        sheen_roughness: value(flow, "Sheen Roughness"),
-        anisotropy: value(flow, "Anisotropic"),
-        anisotropy_rotation: value(flow, "Anisotropic Rotation"),
-        normal: flow.is_linked(at, "Normal").then(|| flow.input(at, "Normal")),
-        coat_normal: flow.is_linked(at, "Coat Normal").then(|| flow.input(at, "Coat Normal")),
-    };
-    let left_out: Vec<&str> = ["Subsurface Weight", "Thin Film Thickness", "Diffuse Roughness"]
-        .into_iter()
-        .filter(|name| {
-            let value = flow.input(at, name);
-            flow.graph.known(value) != Some([0.0; 4])
-        })
-        .collect();
-    if !left_out.is_empty() {
-        flow.warn(format!("{} of the Principled BSDF: not computed yet", left_out.join(", ")));
+fn metallic<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ClosureDesc {
+    let anisotropy = anisotropy(flow, at, "Anisotropy", "Rotation", AnisotropyLaw::Aspect);
+    let facets = facets(flow, at, anisotropy);
+    let film = film(flow, at);
+    match at.node.text("fresnel_type") {
+        "PHYSICAL_CONDUCTOR" => {
+            ClosureDesc::Conductor { eta: input(flow, at, "IOR"), k: input(flow, at, "Extinction"), facets, film }
+        }
+        _ => {
+            ClosureDesc::Metal { base: input(flow, at, "Base Color"), edge: input(flow, at, "Edge Tint"), facets, film }
+        }
     }
-    let alpha = value(flow, "Alpha");
-    let through = flow.graph.subtract(one, alpha);
-    let transparent = flow.graph.multiply(through, weight);
-    let (color, strength) = (value(flow, "Emission Color"), value(flow, "Emission Strength"));
-    let emitted = flow.graph.multiply(color, strength);
-    let seen = flow.graph.multiply(emitted, alpha);
-    let emission = flow.graph.multiply(seen, weight);
-    Meaning { bsdf: Some(bsdf), transparent: Some(transparent), emission: Some(emission), holdout: false }
 }
 
-/// The material of its parameters, constants as such.
-fn finish(flow: &mut Flow<'_, '_>, base: MaterialDesc, l: Layered, alpha: ValueId, emission: ValueId) -> MaterialDesc {
-    let known = |flow: &Flow<'_, '_>, id: ValueId| flow.graph.known(id);
-    let color = |flow: &Flow<'_, '_>, id: ValueId| match known(flow, id) {
-        Some([r, g, b, _]) => ColorInput::constant([r, g, b]),
-        None => ColorInput::graph(id),
-    };
-    let scalar = |flow: &Flow<'_, '_>, id: ValueId| match known(flow, id) {
-        Some([x, ..]) => ScalarInput::constant(x),
-        None => ScalarInput::graph(id),
-    };
-    let fixed = |flow: &mut Flow<'_, '_>, id: ValueId, name: &str, otherwise: f64| {
-        let value = known(flow, id);
-        if value.is_none() {
-            flow.warn(format!("{name} varies over the surface, which is not supported; {otherwise} is taken"));
-        }
-        value.map_or(otherwise, |value| value[0])
-    };
-    let is_zero = |flow: &Flow<'_, '_>, id: ValueId| known(flow, id).is_some_and(|v| v[..3] == [0.0; 3]);
-    let ior = fixed(flow, l.ior, "the IOR", 1.5);
-    let coat = (!is_zero(flow, l.coat)).then(|| CoatDesc {
-        weight: scalar(flow, l.coat),
-        roughness: scalar(flow, l.coat_roughness),
-        ior: fixed(flow, l.coat_ior, "the IOR of the coat", 1.5),
-        normal: l.coat_normal.map(NormalInput::Graph),
-    });
-    let sheen = (!is_zero(flow, l.sheen))
-        .then(|| SheenDesc { color: color(flow, l.sheen), roughness: scalar(flow, l.sheen_roughness) });
-    let anisotropy = (!is_zero(flow, l.anisotropy)).then(|| AnisotropyDesc {
-        strength: fixed(flow, l.anisotropy, "anisotropy", 0.0),
-        rotation: fixed(flow, l.anisotropy_rotation, "the rotation of anisotropy", 0.0) * std::f64::consts::TAU,
+fn facets<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, anisotropy: Option<AnisotropyDesc>) -> FacetsDesc {
+    let distribution = at.node.text("distribution");
+    if matches!(distribution, "BECKMANN" | "ASHIKHMIN_SHIRLEY") {
+        flow.warn(format!("the distribution {distribution} of \"{}\" is rendered as GGX", at.node.name));
+    }
+    FacetsDesc { roughness: number(flow, at, "Roughness"), anisotropy, multiscatter: distribution == "MULTI_GGX" }
+}
+
+/// A thin film, where the node has one.
+pub(super) fn film<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<IridescenceDesc> {
+    at.node.input("Thin Film Thickness")?;
+    let thickness = flow.input(at, "Thin Film Thickness");
+    if flow.graph.known(thickness).is_some_and(|thickness| thickness[0] <= 0.0) {
+        return None;
+    }
+    let ior = flow.input_or(at, "Thin Film IOR", 1.33);
+    Some(IridescenceDesc {
+        weight: ScalarInput::constant(1.0),
+        ior: fixed(flow, ior, "the IOR of the thin film", 1.33),
+        thickness_min: 0.0,
+        thickness_max: 1.0,
+        thickness: scalar(flow, thickness),
+    })
+}
+
+/// What microfacets are stretched along; `None` where they are not.
+pub(super) fn anisotropy<'a>(
+    flow: &mut Flow<'a, '_>,
+    at: At<'a>,
+    strength: &str,
+    rotation: &str,
+    law: AnisotropyLaw,
+) -> Option<AnisotropyDesc> {
+    at.node.input(strength)?;
+    let strength = flow.input(at, strength);
+    if flow.graph.known(strength).is_some_and(|strength| strength[0] == 0.0) {
+        return None;
+    }
+    let rotation = flow.input(at, rotation);
+    let rotation = flow.graph.scale(rotation, std::f64::consts::TAU);
+    let tangent = flow.linked_or(at, "Tangent", |flow| flow.graph.leaf(Leaf::RadialTangent));
+    Some(AnisotropyDesc {
+        strength: scalar(flow, strength),
+        rotation: scalar(flow, rotation),
         texture: None,
-    });
-    let solid = VolumeDesc {
+        tangent: Some(tangent),
+        law,
+    })
+}
+
+/// The normal that is linked to an input.
+pub(super) fn normal<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> Option<NormalInput> {
+    flow.is_linked(at, name).then(|| NormalInput::Graph(flow.input(at, name)))
+}
+
+pub(super) fn input<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> ColorInput {
+    let value = flow.input(at, name);
+    color(flow, value)
+}
+
+pub(super) fn number<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> ScalarInput {
+    let value = flow.input(at, name);
+    scalar(flow, value)
+}
+
+/// A value as an input, a constant as such.
+pub(super) fn color(flow: &Flow<'_, '_>, value: ValueId) -> ColorInput {
+    match flow.graph.known(value) {
+        Some([r, g, b, _]) => ColorInput::constant([r, g, b]),
+        None => ColorInput::graph(value),
+    }
+}
+
+/// See [`color`].
+pub(super) fn scalar(flow: &Flow<'_, '_>, value: ValueId) -> ScalarInput {
+    match flow.graph.known(value) {
+        Some([x, ..]) => ScalarInput::constant(x),
+        None => ScalarInput::graph(value),
+    }
+}
+
+/// A number that has to be the same everywhere.
+pub(super) fn fixed(flow: &mut Flow<'_, '_>, value: ValueId, name: &str, otherwise: f64) -> f64 {
+    let value = flow.graph.known(value);
+    if value.is_none() {
+        flow.warn(format!("{name} varies over the surface, which is not supported; {otherwise} is taken"));
+    }
+    value.map_or(otherwise, |value| value[0])
+}
+
+/// The inside of a transmissive surface: light is bent and nothing is absorbed.
+pub(super) fn solid() -> VolumeDesc {
+    VolumeDesc {
         thickness: ScalarInput::constant(1.0),
         attenuation_distance: f64::INFINITY,
         attenuation_color: [1.0; 3],
-    };
-    let opaque = known(flow, alpha).is_some_and(|alpha| alpha[0] == 1.0);
-    MaterialDesc {
-        base_color: color(flow, l.base_color),
-        alpha: scalar(flow, alpha),
-        alpha_mode: if opaque { AlphaMode::Opaque } else { AlphaMode::Blend },
-        metallic: scalar(flow, l.metallic),
-        roughness: scalar(flow, l.roughness),
-        ior,
-        specular: scalar(flow, l.specular),
-        specular_color: color(flow, l.specular_color),
-        transmission: scalar(flow, l.transmission),
-        volume: (!is_zero(flow, l.transmission)).then_some(solid),
-        coat,
-        sheen,
-        anisotropy,
-        emission: color(flow, emission),
-        normal: l.normal.map(NormalInput::Graph),
-        graph: std::mem::take(&mut flow.graph),
-        ..base
     }
+}
+
+/// How an opacity of `alpha` is read.
+pub(super) fn alpha_mode(flow: &Flow<'_, '_>, alpha: ValueId) -> AlphaMode {
+    let opaque = flow.graph.known(alpha).is_some_and(|alpha| alpha[0] == 1.0);
+    if opaque { AlphaMode::Opaque } else { AlphaMode::Blend }
 }

@@ -171,7 +171,7 @@ impl<'a> Materials<'a> {
             // Whatever its graph looks up: a tilt has to go by something.
             None => graph_uv_sets(material).next().unwrap_or(0),
         });
-        normal.or(material.anisotropy.filter(|a| a.strength > 0.0).map(|_| 0))
+        normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0))
     }
 
     /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.

@@ -7,8 +7,8 @@ use super::expr::{Id, Lookup, Op};
 use super::lower::Lowering;
 use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
-    AlphaMode, AnisotropyDesc, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput,
-    SheenDesc, VolumeDesc,
+    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
+    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -161,6 +161,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         weight: f.scalar("coat weight", coat.weight),
         roughness: f.scalar("coat roughness", coat.roughness),
         ior: f.number("coat index of refraction", coat.ior),
+        tint: ColorInput::constant([1.0; 3]),
         normal: coat.normal.and_then(|id| f.normal("coat normal", id)),
     });
     material.sheen = surface.sheen.filter(|(color, _)| !f.e.exprs.is(*color, 0.0)).map(|(color, roughness)| {
@@ -172,14 +173,17 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
             IridescenceDesc {
                 weight: f.scalar("thin film weight", film.weight),
                 ior: f.number("thin film index of refraction", film.ior),
-                thickness_min: if thickness.texture.is_some() { 0.0 } else { thickness.factor },
-                thickness_max: thickness.factor,
-                thickness_texture: thickness.texture,
+                thickness_min: 0.0,
+                thickness_max: 1.0,
+                thickness,
             }
         });
     material.anisotropy =
         surface.anisotropy.filter(|(strength, _)| !f.e.exprs.is(*strength, 0.0)).map(|(strength, rotation)| {
-            AnisotropyDesc { strength: f.number("anisotropy", strength), rotation, texture: None }
+            // MaterialX narrows by √(1 − a), this law by √(1 − 0.9 s).
+            let strength = ScalarInput::constant((f.number("anisotropy", strength) / 0.9).min(1.0));
+            let rotation = ScalarInput::constant(rotation);
+            AnisotropyDesc { strength, rotation, texture: None, tangent: None, law: AnisotropyLaw::Aspect }
         });
     material.graph = f.lowering.graph;
     Finished { material, colors }

@@ -29,7 +29,7 @@ fn standard_surface_folds_its_weights() {
     same(&[m.metallic.factor, m.specular.factor, m.ior, m.roughness.factor], &[0.25, 0.75, 1.4, 0.2]);
     same(&[m.coat.unwrap().weight.factor, m.coat.unwrap().roughness.factor], &[0.5, 0.1]);
     same(&m.sheen.unwrap().color.factor, &[0.5, 0.25, 0.0]);
-    same(&[m.iridescence.unwrap().thickness_max, m.iridescence.unwrap().ior], &[400.0, 1.5]);
+    same(&[m.iridescence.unwrap().thickness.factor, m.iridescence.unwrap().ior], &[400.0, 1.5]);
     same(&m.emission.factor, &[3.0, 6.0, 9.0]);
     same(&[m.alpha.factor], &[0.5]);
     assert_eq!(m.alpha_mode, AlphaMode::Blend);
@@ -77,9 +77,9 @@ fn open_pbr_of_blender() {
     );
     let m = read.material();
     same(&[m.emission.factor[0], m.sheen.unwrap().color.factor[0], m.alpha.factor], &[3.0, 0.4, 0.5]);
-    same(&[m.iridescence.unwrap().thickness_max, m.coat.unwrap().ior], &[300.0, 1.5]);
+    same(&[m.iridescence.unwrap().thickness.factor, m.coat.unwrap().ior], &[300.0, 1.5]);
     let anisotropy = m.anisotropy.unwrap();
-    same(&[anisotropy.strength, anisotropy.rotation], &[0.21, std::f64::consts::FRAC_PI_2]);
+    same(&[anisotropy.strength.factor, anisotropy.rotation.factor], &[0.21 / 0.9, std::f64::consts::FRAC_PI_2]);
     assert!(read.warnings.contains("subsurface") && read.warnings.lines().count() == 1, "{}", read.warnings);
 }
 

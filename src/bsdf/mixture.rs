@@ -1,0 +1,244 @@
+//! A mixture of weighted lobes, seen from one direction.
+
+use smallvec::SmallVec;
+
+use super::lobe::{AnyLobe, Drawn, Scatter, Value};
+use super::surface::ThinFilm;
+use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
+use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
+
+/// How the sides of a lobe are counted in the passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Class {
+    /// Diffuse on both sides.
+    Diffuse,
+    /// Glossy above, transmission below.
+    Interface,
+}
+
+impl Class {
+    fn above(self) -> Lobe {
+        match self {
+            Self::Diffuse => Lobe::Diffuse,
+            Self::Interface => Lobe::Glossy,
+        }
+    }
+
+    fn below(self) -> Lobe {
+        match self {
+            Self::Diffuse => Lobe::Diffuse,
+            Self::Interface => Lobe::Transmission,
+        }
+    }
+}
+
+/// A lobe and its share.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    lobe: AnyLobe,
+    color: Rgb,
+    /// Probability with which it is chosen.
+    pick: f32,
+    class: Class,
+    /// Index of its own frame.
+    frame: Option<u8>,
+}
+
+/// Index of a lobe's own frame; `None` for that of the surface.
+pub(super) type FrameId = Option<u8>;
+
+/// A surface, seen from one direction.
+#[derive(Clone, Debug)]
+pub struct Bsdf {
+    terms: SmallVec<[Term; 4]>,
+    /// Frames of lobes with normals or tangents of their own, within the surface's frame, and `wo` in them.
+    frames: SmallVec<[(Frame, Vec3); 1]>,
+    /// With z ≥ 0.
+    wo: Vec3,
+    /// The sign of the given z.
+    side: f32,
+    /// Geometric normal on the side of `wo`.
+    ng: Vec3,
+}
+
+/// A [`Bsdf`] in the making.
+#[derive(Debug)]
+pub struct Builder {
+    bsdf: Bsdf,
+    entering: bool,
+    /// Frame of what is added next, where it names none.
+    base: FrameId,
+}
+
+impl Builder {
+    /// For a view from `wo` of a surface with geometric normal `ng` on the side of `wo`, both in the
+    /// surface's frame. `entering` is true where `wo` is on the outside, the side to which the geometric
+    /// normal points; it has no meaning for thin surfaces.
+    pub fn new(wo: Vec3, ng: Vec3, entering: bool) -> Self {
+        let side = if wo.z < 0.0 { -1.0 } else { 1.0 };
+        let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
+        let ng = Vec3::new(ng.x, ng.y, ng.z * side);
+        Self { bsdf: Bsdf { terms: SmallVec::new(), frames: SmallVec::new(), wo, side, ng }, entering, base: None }
+    }
+
+    pub(super) fn entering(&self) -> bool {
+        self.entering
+    }
+
+    /// What is added from now on has the normal of `frame`, given within the surface's own; with `None` that of
+    /// the surface.
+    pub fn set_normal(&mut self, frame: Option<Frame>) {
+        self.base = self.frame(frame);
+    }
+
+    /// `wo` in a lobe's frame.
+    pub(super) fn wo(&self, frame: FrameId) -> Vec3 {
+        frame.or(self.base).map_or(self.bsdf.wo, |frame| self.bsdf.frames[usize::from(frame)].1)
+    }
+
+    /// Keeps a frame for lobes to name. One from which `wo` is seen below the horizon is not kept.
+    pub(super) fn frame(&mut self, frame: Option<Frame>) -> FrameId {
+        let frame = frame?;
+        let wo = frame.to_local(self.bsdf.wo);
+        let index = self.bsdf.frames.len();
+        if wo.z <= 0.0 || index > usize::from(u8::MAX) {
+            return None;
+        }
+        self.bsdf.frames.push((frame, wo));
+        Some(index as u8)
+    }
+
+    /// Film as seen from the camera's side: relative to the medium there.
+    pub(super) fn film_seen(&self, film: &Option<ThinFilm>, ior: f32) -> Option<ThinFilm> {
+        film.map(|film| ThinFilm { ior: if self.entering { film.ior } else { film.ior / ior }, ..film })
+    }
+
+    /// Adds a lobe times `color`.
+    #[inline]
+    pub(super) fn push(&mut self, color: Rgb, class: Class, frame: FrameId, lobe: impl Into<AnyLobe>) {
+        let color = color.map(|c| c.max(0.0));
+        if color.max_component() > 0.0 {
+            self.bsdf.terms.push(Term { lobe: lobe.into(), color, pick: 0.0, class, frame: frame.or(self.base) });
+        }
+    }
+
+    /// All that was added; lobes are chosen in proportion to their albedos.
+    #[inline]
+    pub fn finish(mut self) -> Bsdf {
+        let mut total = 0.0;
+        for term in &mut self.bsdf.terms {
+            term.pick = (term.color * term.lobe.albedo().sum()).mean();
+            total += term.pick;
+        }
+        let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
+        for term in &mut self.bsdf.terms {
+            term.pick *= scale;
+        }
+        self.bsdf
+    }
+}
+
+impl Bsdf {
+    /// One layered surface, seen from `wo`; see [`Builder::new`].
+    pub fn new(surface: &Surface, wo: Vec3, entering: bool) -> Self {
+        let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+        builder.add(Rgb::WHITE, &Closure::Layered(*surface));
+        builder.finish()
+    }
+
+    /// The directional albedo per class, which the color passes hold.
+    pub fn albedo(&self) -> ByLobe {
+        let mut sum = ByLobe::BLACK;
+        for term in &self.terms {
+            let sides = term.lobe.albedo();
+            *sum.get_mut(term.class.above()) += term.color * sides.above;
+            *sum.get_mut(term.class.below()) += term.color * sides.below;
+        }
+        sum
+    }
+
+    /// True where `eval` is 0 for all directions: asking lights is of no use.
+    pub fn is_delta_only(&self) -> bool {
+        self.terms.iter().all(|term| term.lobe.is_delta())
+    }
+
+    /// True where light can come from the other side of the surface.
+    pub fn transmits(&self) -> bool {
+        self.terms.iter().any(|term| term.lobe.transmits())
+    }
+
+    /// True where some channel is not scattered diffusely.
+    pub fn lacks_diffuse(&self) -> bool {
+        let diffuse: Rgb = self.terms.iter().filter(|t| t.class == Class::Diffuse).map(|t| t.color).sum();
+        diffuse.r == 0.0 || diffuse.g == 0.0 || diffuse.b == 0.0
+    }
+
+    /// The value towards `wi`.
+    pub fn eval(&self, wi: Vec3) -> BsdfEval {
+        self.value(self.turned(wi))
+    }
+
+    fn value(&self, wi: Vec3) -> BsdfEval {
+        let above = wi.dot(self.ng) > 0.0;
+        let mut sum = BsdfEval::default();
+        for term in &self.terms {
+            let (wo, wi) = match term.frame {
+                None => (self.wo, wi),
+                Some(frame) => self.within(frame, wi),
+            };
+            // Where shading and geometry disagree on the side, light would leak through the surface, or a
+            // reflection go into it.
+            if (wi.z > 0.0) != above || wi.z == 0.0 {
+                continue;
+            }
+            let Value { f_cos, pdf } = term.lobe.eval(wo, wi);
+            let class = if above { term.class.above() } else { term.class.below() };
+            *sum.f_cos.get_mut(class) += term.color * f_cos;
+            sum.pdf += term.pick * pdf;
+        }
+        sum
+    }
+
+    /// Draws a direction: `uc` chooses the lobe, `u` the direction. `None` where nothing scatters.
+    pub fn sample(&self, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        let mut rest = uc;
+        let mut chosen = self.terms.iter().filter(|term| term.pick > 0.0);
+        let mut term = chosen.next()?;
+        while rest >= term.pick {
+            // Rounding may leave a little beyond the last.
+            let Some(next) = chosen.next() else {
+                rest = term.pick * ONE_MINUS_EPSILON;
+                break;
+            };
+            rest -= term.pick;
+            term = next;
+        }
+        let uc = (rest / term.pick).min(ONE_MINUS_EPSILON);
+        let wo = term.frame.map_or(self.wo, |frame| self.frames[usize::from(frame)].1);
+        let Drawn { wi: local, eta, delta } = term.lobe.sample(wo, uc, u)?;
+        let wi = term.frame.map_or(local, |frame| self.frames[usize::from(frame)].0.to_world(local));
+        let above = local.z > 0.0;
+        if above != (wi.dot(self.ng) > 0.0) {
+            return None;
+        }
+        let lobe = if above { term.class.above() } else { term.class.below() };
+        if let Some((color, p)) = delta {
+            let pdf = term.pick * p;
+            let weight = ByLobe::only(lobe, term.color * color * (1.0 / pdf));
+            return (pdf > 0.0).then(|| BsdfSample { wi: self.turned(wi), weight, pdf, lobe, delta: true, eta });
+        }
+        let BsdfEval { f_cos, pdf } = self.value(wi);
+        let wi = self.turned(wi);
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: f_cos * (1.0 / pdf), pdf, lobe, delta: false, eta })
+    }
+
+    fn within(&self, frame: u8, wi: Vec3) -> (Vec3, Vec3) {
+        let (frame, wo) = &self.frames[usize::from(frame)];
+        (*wo, frame.to_local(wi))
+    }
+
+    /// Between the caller's hemisphere and that in which `wo` is above; its own inverse.
+    fn turned(&self, w: Vec3) -> Vec3 {
+        Vec3::new(w.x, w.y, w.z * self.side)
+    }
+}

@@ -1,0 +1,182 @@
+//! What scatters at a point: the parts of its material evaluated, in its shading frame.
+
+use super::material::{Lookups, NormalInput, Part, ScalarInput};
+use super::{Interaction, Scene};
+use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Stretched};
+use crate::desc::AnisotropyLaw;
+use crate::desc::graph::Value;
+use crate::math::{DVec3, Frame, Rgb, Vec3, sqr};
+
+/// Normals and tangents of a part.
+#[derive(Clone, Debug, Default)]
+pub struct Bends {
+    /// Its normal; `None` for the surface's.
+    pub normal: Option<NormalSource>,
+    /// The normal of its coat.
+    pub coat: Option<NormalSource>,
+    /// What its microfacets are stretched along.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// Where a normal comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum NormalSource {
+    /// A tangent-space map.
+    Map(NormalInput),
+    /// Index of a value of the program for bends, in world space.
+    Graph(u8),
+}
+
+/// Microfacets that are wider along one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Anisotropy {
+    /// 0 to 1.
+    pub strength: ScalarInput,
+    /// Radians counter-clockwise from the tangent.
+    pub rotation: ScalarInput,
+    /// Direction in red and green, strength in blue: index into the material's inputs.
+    pub texture: Option<u8>,
+    /// Index of a value of the program for bends, the tangent in world space; `None` for that of the UVs.
+    pub tangent: Option<u8>,
+    /// What strength means.
+    pub law: AnisotropyLaw,
+}
+
+impl Scene {
+    /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it.
+    pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32) -> Bsdf {
+        let material = self.material(it);
+        let ng = if it.front { it.ng } else { -it.ng };
+        let mut builder = Builder::new(frame.to_local(it.wo), frame.to_local(ng), it.front);
+        let mut values = None;
+        let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
+        for part in &material.parts {
+            let evaluate = || part.closure.map(|color| lookups.color(color), |scalar| lookups.scalar(scalar));
+            let mut closure = part.fixed.unwrap_or_else(evaluate);
+            if let Closure::Layered(surface) = &mut closure
+                && let Some([r, g, b, _]) = self.vertex_color(it)
+            {
+                surface.base_color = surface.base_color * Rgb::new(r, g, b);
+            }
+            let normal = part.bends.is_some().then(|| self.bend(it, frame, part, &lookups, &mut closure)).flatten();
+            builder.set_normal(normal);
+            builder.add(Rgb::splat(lookups.scalar(&part.weight).max(0.0) * share), &closure);
+        }
+        builder.finish()
+    }
+
+    /// Turns what has a normal or a tangent of its own; the frame of the whole part, if it has one.
+    #[cold]
+    fn bend(
+        &self,
+        it: &Interaction,
+        frame: &Frame,
+        part: &Part,
+        lookups: &Lookups<'_>,
+        closure: &mut Closure,
+    ) -> Option<Frame> {
+        let bends = part.bends.as_ref()?;
+        let material = self.material(it);
+        let mut values = None;
+        let program = material.programs.as_ref().and_then(|programs| programs.bends.as_ref());
+        let values = self.run(it, program, &mut values);
+        let within = |source: &NormalSource| {
+            let n = self.own_normal(it, frame, source, values);
+            let along = Frame::from_z_and_tangent(n, frame.s);
+            Frame { s: frame.to_local(along.s), t: frame.to_local(along.t), n: frame.to_local(along.n) }
+        };
+        let normal = bends.normal.as_ref().map(within);
+        let coat = bends.coat.as_ref().map(within);
+        let stretched = bends.anisotropy.as_ref().and_then(|anisotropy| {
+            let roughness = match closure {
+                Closure::Layered(surface) => surface.roughness,
+                Closure::Glossy { facets, .. } | Closure::Metal { facets, .. } | Closure::Conductor { facets, .. } => {
+                    facets.roughness
+                }
+                _ => return None,
+            };
+            let around = normal.map_or(Vec3::Z, |normal| normal.n);
+            self.stretched(it, frame, around, anisotropy, lookups, values, roughness)
+        });
+        match closure {
+            Closure::Layered(surface) => {
+                surface.stretched = stretched;
+                if let Some(layer) = &mut surface.coat {
+                    layer.frame = coat.or(normal);
+                }
+            }
+            Closure::Glossy { facets, .. } | Closure::Metal { facets, .. } | Closure::Conductor { facets, .. } => {
+                *facets = Microfacets { stretched, ..*facets };
+            }
+            _ => {}
+        }
+        normal
+    }
+
+    /// A normal of its own in world space, on the side of `wo`.
+    fn own_normal(&self, it: &Interaction, frame: &Frame, source: &NormalSource, values: &[Value]) -> Vec3 {
+        let smooth = if it.front { it.ns } else { -it.ns };
+        let n = match source {
+            NormalSource::Map(map) => {
+                let n = self.mapped_normal(it, map);
+                if it.front { n } else { -n }
+            }
+            NormalSource::Graph(value) => values
+                .get(usize::from(*value))
+                .and_then(|[x, y, z, _]| DVec3::new(*x, *y, *z).as_vec3().try_normalize())
+                .unwrap_or(smooth),
+        };
+        let ng = if it.front { it.ng } else { -it.ng };
+        let n = super::interaction::facing(n, ng, it.wo);
+        if n.is_finite() { n } else { frame.n }
+    }
+
+    fn stretched(
+        &self,
+        it: &Interaction,
+        frame: &Frame,
+        around: Vec3,
+        anisotropy: &Anisotropy,
+        lookups: &Lookups<'_>,
+        values: &[Value],
+        roughness: f32,
+    ) -> Option<Stretched> {
+        let mut strength = lookups.scalar(&anisotropy.strength);
+        let mut rotation = lookups.scalar(&anisotropy.rotation);
+        if let Some(texture) = anisotropy.texture {
+            let [r, g, b, _] = lookups.texel(texture);
+            rotation += (2.0_f32 * g - 1.0).atan2(2.0 * r - 1.0);
+            strength *= b;
+        }
+        let least = if anisotropy.law == AnisotropyLaw::Glossy { -1.0 } else { 0.0 };
+        let strength = strength.clamp(least, 1.0);
+        if strength == 0.0 {
+            return None;
+        }
+        let tangent = match anisotropy.tangent {
+            Some(value) => {
+                let [x, y, z, _] = values.get(usize::from(value)).copied().unwrap_or_default();
+                frame.to_local(DVec3::new(x, y, z).as_vec3())
+            }
+            None => Vec3::X,
+        };
+        // Counter-clockwise as the texture's axes turn: mirrored ones turn the other way.
+        let rotation = if anisotropy.tangent.is_none() { rotation * self.handedness(it) } else { rotation };
+        let along = Frame::from_z_and_tangent(around, tangent);
+        let (sin, cos) = rotation.sin_cos();
+        let frame = Frame { s: along.s * cos + along.t * sin, t: along.t * cos - along.s * sin, n: along.n };
+        let alpha = sqr(roughness.clamp(0.0, 1.0));
+        let alpha = match anisotropy.law {
+            AnisotropyLaw::Gltf => [alpha + (1.0 - alpha) * sqr(strength), alpha],
+            AnisotropyLaw::Aspect => {
+                let aspect = (1.0 - 0.9 * strength).sqrt();
+                [alpha / aspect, alpha * aspect]
+            }
+            AnisotropyLaw::Glossy => {
+                let narrow = 1.0 - strength.abs().min(0.99);
+                if strength > 0.0 { [alpha * narrow, alpha / narrow] } else { [alpha / narrow, alpha * narrow] }
+            }
+        };
+        Some(Stretched { alpha, frame })
+    }
+}
