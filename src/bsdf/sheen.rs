@@ -3,7 +3,7 @@
 //! Tizian Zeltner, Brent Burley and Matt Jen-Yuan Chiang, *Practical Multiple-Scattering Sheen Using Linearly
 //! Transformed Cosines*, SIGGRAPH 2022. The table holds the entries A and B of the transform and the
 //! albedo, by roughness and cosine; its values are those that Cycles shows, measured by
-//! `tests/cycles/sheen_table.py`.
+//! `benches/cycles/sheen_table.py`.
 
 use std::f32::consts::FRAC_1_PI;
 

@@ -395,3 +395,83 @@ def thin():
         bpy.context.object.data.materials.append(material(f"Pane {alpha}", Alpha=alpha))
     lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
     world(0.3)
+
+
+def mix(name, first, second, factor=0.5, kind="ShaderNodeMixShader"):
+    """A material that mixes (or adds) two shaders, each a type and its inputs."""
+    result = bpy.data.materials.new(name)
+    result.use_nodes = True
+    tree = result.node_tree
+    tree.nodes.clear()
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    both = tree.nodes.new(kind)
+    offset = len(both.inputs) - 2
+    if offset:
+        both.inputs[0].default_value = factor
+    for i, (node_type, inputs) in enumerate((first, second)):
+        shader = tree.nodes.new(node_type)
+        for key, value in inputs.items():
+            shader.inputs[key.replace("_", " ")].default_value = value
+        tree.links.new(shader.outputs[0], both.inputs[offset + i])
+    tree.links.new(both.outputs[0], output.inputs["Surface"])
+    return result
+
+
+def lit_room(floor):
+    """The room with an area lamp and a dim world."""
+    room(floor)
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.3)
+
+
+def rough_diffuse():
+    lit_room(material("Clay", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.3, 1.0), Roughness=1.0))
+
+
+def glossy():
+    lit_room(material("Satin", "ShaderNodeBsdfGlossy", Color=(0.8, 0.6, 0.3, 1.0), Roughness=0.5))
+
+
+def stretched():
+    lit_room(material("Brushed", Metallic=1.0, Roughness=0.4, Anisotropic=0.7, Base_Color=(0.9, 0.7, 0.4, 1.0)))
+
+
+def coated():
+    lit_room(material("Lacquer", Base_Color=(0.6, 0.1, 0.1, 1.0), Coat_Weight=0.8, Coat_Roughness=0.2,
+                      Coat_Tint=(0.9, 0.7, 0.5, 1.0)))
+
+
+def cloth():
+    lit_room(material("Velvet", Base_Color=(0.1, 0.1, 0.4, 1.0), Sheen_Weight=1.0, Sheen_Roughness=0.4,
+                      Sheen_Tint=(0.9, 0.8, 0.7, 1.0)))
+
+
+def mixed_shaders():
+    lit_room(mix("Mixed", ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.2, 0.5, 0.7, 1.0), "Roughness": 0.6}),
+                 ("ShaderNodeBsdfGlossy", {"Color": (0.9, 0.5, 0.2, 1.0), "Roughness": 0.3}), 0.4))
+
+
+def leaf():
+    lit_room(mix("Leaf", ("ShaderNodeBsdfDiffuse", {"Color": (0.2, 0.5, 0.1, 1.0)}),
+                 ("ShaderNodeBsdfTranslucent", {"Color": (0.4, 0.7, 0.1, 1.0)})))
+
+
+def red_film():
+    """A sheet that lets red light through, and its shadow."""
+    room()
+    lamp("SUN", rotation=(0.3, 0.3, 0.0), energy=2.0, angle=0.05)
+    world(0.2)
+    bpy.ops.mesh.primitive_plane_add(size=1.6, location=(-1.2, 0.6, 0.9))
+    bpy.context.object.data.materials.append(
+        mix("Film", ("ShaderNodeBsdfTransparent", {"Color": (0.9, 0.2, 0.1, 1.0)}),
+            ("ShaderNodeBsdfDiffuse", {"Color": (0.1, 0.2, 0.8, 1.0)}), 0.3))
+
+
+def glow():
+    """Light that is added to nothing: a sheet that all passes and that emits."""
+    room()
+    world(0.3)
+    bpy.ops.mesh.primitive_plane_add(size=1.6, location=(0.8, -0.6, 1.6))
+    bpy.context.object.data.materials.append(
+        mix("Glow", ("ShaderNodeBsdfTransparent", {}), ("ShaderNodeEmission", {"Strength": 3.0}),
+            kind="ShaderNodeAddShader"))

@@ -2,7 +2,7 @@
 
 use super::flow::{At, Flow};
 use super::surface::{alpha_mode, anisotropy, color, film, fixed, input, normal, number, scalar, solid};
-use crate::desc::graph::ValueId;
+use crate::desc::graph::{Function, Leaf, Math, ValueId};
 use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, ScalarInput, SheenDesc};
 
 /// `base` as the surface of the node alone.
@@ -51,7 +51,45 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
     }
     let alpha = flow.input(at, "Alpha");
     let (color, strength) = (flow.input(at, "Emission Color"), flow.input(at, "Emission Strength"));
-    (layers, alpha, flow.graph.multiply(color, strength))
+    let emission = flow.graph.multiply(color, strength);
+    (layers, alpha, covered(flow, at, emission))
+}
+
+/// What is left of `emission` above the coat, taken for smooth.
+fn covered<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, emission: ValueId) -> ValueId {
+    let zero = |flow: &Flow<'_, '_>, value: ValueId| flow.graph.known(value).is_some_and(|v| v[..3] == [0.0; 3]);
+    let weight = flow.input(at, "Coat Weight");
+    if zero(flow, emission) {
+        return emission;
+    }
+    let sheen = flow.input(at, "Sheen Weight");
+    if !zero(flow, sheen) {
+        flow.warn("the sheen of a Principled BSDF does not dim its emission");
+    }
+    if zero(flow, weight) {
+        return emission;
+    }
+    let ior = flow.input_or(at, "Coat IOR", 1.5);
+    let normal = flow.linked_or(at, "Coat Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let one = flow.graph.number(1.0);
+    let reflected = flow.graph.fresnel(ior, normal);
+    let reflected = flow.graph.multiply(reflected, weight);
+    let passed = flow.graph.subtract(one, reflected);
+    // tint^(1/cos) for the cosine within the coat, cos² = 1 − (1 − (n·wo)²) / ior².
+    let incoming = flow.graph.leaf(Leaf::Incoming);
+    let cos = flow.graph.apply(Function::Dot(3), &[incoming, normal]);
+    let sine = flow.graph.multiply(cos, cos);
+    let sine = flow.graph.subtract(one, sine);
+    let squared = flow.graph.multiply(ior, ior);
+    let within = flow.graph.math(Math::Divide, &[sine, squared]);
+    let within = flow.graph.subtract(one, within);
+    let within = flow.graph.math(Math::Sqrt, &[within]);
+    let depth = flow.graph.math(Math::Divide, &[one, within]);
+    let tint = flow.input(at, "Coat Tint");
+    let tint = flow.graph.math(Math::Power, &[tint, depth]);
+    let tint = flow.graph.mix(one, tint, weight);
+    let emission = flow.graph.multiply(emission, passed);
+    flow.graph.multiply(emission, tint)
 }
 
 /// An input that older versions lack; 0 there.
