@@ -158,15 +158,11 @@ impl Case {
 
     /// True where there are no tables for its albedo, only estimates.
     fn is_estimated(&self) -> bool {
-        let film_or_stretched =
-            |film: &Option<ThinFilm>, facets: &Microfacets| film.is_some() || facets.stretched.is_some();
         match &self.closure {
             Closure::Layered(surface) => surface.film.is_some() || surface.stretched.is_some(),
-            Closure::Metal { film, facets, .. } | Closure::Conductor { film, facets, .. } => {
-                film_or_stretched(film, facets)
-            }
+            Closure::Metal { film, facets, .. } => film.is_some() || facets.stretched.is_some(),
             Closure::Glossy { facets, .. } => facets.stretched.is_some(),
-            Closure::Toon { .. } => true,
+            Closure::Conductor { .. } | Closure::Toon { .. } => true,
             _ => false,
         }
     }

@@ -189,7 +189,7 @@ mod tests {
             let exact = average(|mu| fresnel_dielectric(mu, eta));
             assert!((average_dielectric(eta) - exact).abs() < 7e-3, "{eta}: {exact}");
         }
-        for edge in [Rgb::WHITE, Rgb::new(0.2, 0.5, 1.0)] {
+        for edge in [Rgb::WHITE, Rgb::new(0.7, 0.5, 1.0)] {
             let metal = Metal::new(Rgb::new(0.1, 0.5, 0.9), edge);
             let exact = Rgb::new(
                 average(|mu| metal.reflectance(mu).r),

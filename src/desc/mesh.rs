@@ -119,6 +119,8 @@ pub struct InstanceDesc {
     /// True where the camera sees a hole in the picture instead: black, of alpha 0. All other rays see it as
     /// it is.
     pub holdout: bool,
+    /// The camera sees nothing of it but the shadows of others on it.
+    pub catcher: bool,
 }
 
 /// What graphs ask an object for.

@@ -30,6 +30,8 @@ pub(super) struct Means<'a> {
     pub(super) count: u32,
     /// From the extra ray.
     pub(super) first_hit: FirstHit,
+    /// True where shadow catchers are summed up.
+    pub(super) has_catchers: bool,
 }
 
 impl Means<'_> {
@@ -43,6 +45,21 @@ impl Means<'_> {
             }
         }
         mean
+    }
+
+    /// Combined, with what lies behind shadow catchers darkened by the shadows on them and covered by as much.
+    fn combined(&self) -> [f64; 4] {
+        let mut combined = self.of(Q::Combined);
+        if self.has_catchers {
+            let (lit, all) = (self.of(Q::CatcherLit), self.of(Q::CatcherUnshadowed));
+            let s: [f64; 3] = std::array::from_fn(|i| if all[i] == 0.0 { 1.0 } else { (lit[i] / all[i]).min(1.0) });
+            let (behind, share, mean) = (self.of(Q::Behind), self.of(Q::CatcherShare)[0], (s[0] + s[1] + s[2]) / 3.0);
+            for i in 0..3 {
+                combined[i] += s[i] * behind[i];
+            }
+            combined[3] += (1.0 - mean) * share + mean * behind[3];
+        }
+        combined
     }
 
     /// Mean of `a` over the mean of `b` per channel; 0 where `b` is 0.
@@ -126,7 +143,7 @@ use Storage::{Color, Data};
 /// The passes, in the order in which a file holds them.
 #[rustfmt::skip]
 pub static PASSES: &[Pass] = &[
-    pixel("combined", "Combined", "RGBA", Color, &[Q::Combined], |m| m.of(Q::Combined),
+    pixel("combined", "Combined", "RGBA", Color, &[Q::Combined], |m| m.combined(),
         "radiance, premultiplied by alpha"),
     pixel("depth", "Depth", "Z", Data, &[Q::FirstHit], |m| [f64::from(m.first_hit.depth), 0.0, 0.0, 0.0],
         "distance along the camera's axis at the pixel's centre; background 1e10"),

@@ -154,6 +154,16 @@ impl PassSet {
         Ok(Self::from_choices(choices, kept))
     }
 
+    /// The same for a scene with shadow catchers, which change Combined.
+    pub fn with_catchers(mut self) -> Self {
+        if self.needs(Quantity::Combined) {
+            use Quantity::{Behind, CatcherLit, CatcherShare, CatcherUnshadowed};
+            let all = [CatcherLit, CatcherUnshadowed, CatcherShare, Behind];
+            self.quantities = all.into_iter().fold(self.quantities, |set, q| set.with(q));
+        }
+        self
+    }
+
     fn from_choices(choices: Vec<Choice>, groups: Vec<Arc<str>>) -> Self {
         let asked = PASSES.iter().zip(&choices).filter(|(_, choice)| **choice != Choice::Nothing);
         let quantities = asked.flat_map(|(pass, _)| pass.needs).fold(Quantities::default(), |set, &q| set.with(q));

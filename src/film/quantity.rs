@@ -32,6 +32,10 @@ pub enum Quantity {
     GroupUnshadowed,
     GroupIrradianceShadowed,
     GroupIrradianceUnshadowed,
+    CatcherLit,
+    CatcherUnshadowed,
+    CatcherShare,
+    Behind,
     Normal,
     Uv,
     DenoisingNormal,
@@ -49,7 +53,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of the film's memory.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 34] = [
         Self::Combined,
         Self::DiffuseDirect,
         Self::DiffuseIndirect,
@@ -71,6 +75,10 @@ impl Quantity {
         Self::GroupUnshadowed,
         Self::GroupIrradianceShadowed,
         Self::GroupIrradianceUnshadowed,
+        Self::CatcherLit,
+        Self::CatcherUnshadowed,
+        Self::CatcherShare,
+        Self::Behind,
         Self::Normal,
         Self::Uv,
         Self::DenoisingNormal,
@@ -97,8 +105,8 @@ impl Quantity {
     /// How many numbers the film adds up for it, for one group; 0 for those that are kept in another way.
     pub const fn width(self) -> usize {
         match self {
-            Self::Combined => 4,
-            Self::DenoisingDepth => 1,
+            Self::Combined | Self::Behind => 4,
+            Self::DenoisingDepth | Self::CatcherShare => 1,
             Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => 0,
             _ => 3,
         }
@@ -135,6 +143,13 @@ impl Quantity {
             Self::Unshadowed => color(s.unshadowed),
             Self::IrradianceShadowed => color(s.irradiance_shadowed),
             Self::IrradianceUnshadowed => color(s.irradiance_unshadowed),
+            Self::CatcherLit => color(s.catcher.lit),
+            Self::CatcherUnshadowed => color(s.catcher.unshadowed),
+            Self::CatcherShare => [s.catcher.share, 0.0, 0.0, 0.0],
+            Self::Behind => {
+                let Rgb { r, g, b } = s.catcher.behind;
+                [r, g, b, s.catcher.alpha]
+            }
             Self::Normal => vector(s.normal),
             Self::Uv => [s.uv[0], s.uv[1], s.uv[2], 0.0],
             Self::DenoisingNormal => vector(s.denoising_normal),

@@ -51,6 +51,21 @@ pub struct GroupSample {
     pub irradiance_unshadowed: Rgb,
 }
 
+/// What a shadow catcher that the camera path met makes of what lies behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CatcherSample {
+    /// How much of the sample it covers.
+    pub share: f32,
+    /// Direct irradiance that arrives at it.
+    pub lit: Rgb,
+    /// The same with no other object in the way.
+    pub unshadowed: Rgb,
+    /// Radiance of what lies behind it, premultiplied by `alpha`; no part of `combined`.
+    pub behind: Rgb,
+    /// Alpha of that; no part of the sample's.
+    pub alpha: f32,
+}
+
 /// What one camera path gives. Radiances are scene-linear Rec.709 and carry everything up to the eye;
 /// fields whose pass is not asked for stay 0 and are not read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,6 +96,8 @@ pub struct PixelSample {
     pub normal: Vec3,
     /// Texture coordinates times coverage; the third is the coverage where the surface has UVs, else 0.
     pub uv: [f32; 3],
+    /// A shadow catcher in front.
+    pub catcher: CatcherSample,
     /// Normal for a denoiser, in camera space.
     pub denoising_normal: Vec3,
     /// Albedo for a denoiser; for emitters their emission.
@@ -109,6 +126,9 @@ impl PixelSample {
             &mut self.unshadowed,
             &mut self.irradiance_shadowed,
             &mut self.irradiance_unshadowed,
+            &mut self.catcher.lit,
+            &mut self.catcher.unshadowed,
+            &mut self.catcher.behind,
         ];
         for color in once {
             *color *= factor;

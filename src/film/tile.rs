@@ -228,6 +228,7 @@ impl Tile {
             offsets: &group.map_or(&self.layout.all, |group| &self.layout.groups[group]).offsets,
             count: self.counts[pixel],
             first_hit: self.first_hits.get(pixel).copied().unwrap_or_default(),
+            has_catchers: self.layout.all.quantities.contains(Quantity::CatcherShare),
         }
     }
 

@@ -88,6 +88,25 @@ impl Shading<'_> {
         Some(DirectLight { unoccluded: response * (li * (1.0 / pdf)), visibility, rules })
     }
 
+    /// Irradiance of one sample of one light on the side of the viewer: what arrives, and what would if only shadow
+    /// catchers stood in the way.
+    pub fn sample_catcher(&self, scene: &Scene, sampler: &Sampler) -> Option<[Rgb; 2]> {
+        let at = Receiver { n: Some(self.frame.n), alone: true, ..self.receiver(scene) };
+        let choice = scene.lights.choose(&at, sampler.get_1d(self.decision(Decision::ShadowChoice)))?;
+        let u = sampler.get_2d(self.decision(Decision::ShadowPoint));
+        let (LightSample { li, wi, end, pdf, .. }, rules) = sample(scene, &at, choice, u)?;
+        let cos = self.frame.n.dot(wi);
+        if !rules.seen.diffuse || cos <= 0.0 || leaks(self.it, wi, cos) {
+            return None;
+        }
+        let irradiance = li * (cos / pdf);
+        let ray = end.map_or_else(|| self.it.spawn(wi), |end| self.it.spawn_to(end));
+        if scene.is_caught(&ray) {
+            return None;
+        }
+        Some([irradiance * scene.transmittance(&ray, rules.shadow), irradiance])
+    }
+
     fn decision(&self, decision: Decision) -> Dimension {
         Dimension::at_bounce(self.vertex, decision)
     }

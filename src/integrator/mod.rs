@@ -1,6 +1,7 @@
 //! Radiance of one sample: the integrator's one entry is [`sample`].
 
 mod ao;
+mod catcher;
 mod direct;
 mod first_hit;
 mod media;

@@ -3,7 +3,6 @@
 //! James Kajiya: *The Rendering Equation*, SIGGRAPH 1986. Eric Veach: *Robust Monte Carlo Methods
 //! for Light Transport Simulation*, 1997, chapters 9 and 10.
 
-use super::ao;
 use super::direct::Shading;
 use super::first_hit::{describe, describe_shape};
 use super::media::Media;
@@ -11,6 +10,7 @@ use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
 use super::shadow_pass;
 use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
+use super::{ao, catcher};
 use crate::bsdf::{ByLobe, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules, Shadow};
@@ -103,6 +103,7 @@ pub fn trace(
     let mut sample = PixelSample::with_groups(scene.passes.groups().len());
     let mut path = Path::from_camera(ray, cone);
     let mut described = !scene.effects.geometry;
+    let mut in_front = None;
     loop {
         let surface = next_surface(scene, sampler, &mut path, |path, met| match met {
             Met::Stretch(segment) if scene.effects.lamps => add_lamps(scene, path, segment, &mut sample),
@@ -125,6 +126,16 @@ pub fn trace(
             break;
         }
         let frame = scene.shading_frame(&it);
+        if path.scatterings == 0 && scene.effects.catchers && scene.instance(it.instance).catcher {
+            if in_front.is_none() {
+                let bsdf = scene.bsdf(&it, &frame, path.share);
+                let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
+                let samples = settings.light_samples;
+                in_front = Some(catcher::meet(scene, sampler, &shading, path.alpha, samples, &mut sample));
+            }
+            path.ray = it.spawn(path.ray.d);
+            continue;
+        }
         if path.scatterings == 0 {
             sample.alpha = path.alpha;
             describe(scene, &it, &frame, &mut sample);
@@ -167,6 +178,9 @@ pub fn trace(
         if (only_emitters && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
             break;
         }
+    }
+    if let Some(in_front) = in_front {
+        catcher::set_apart(in_front, &mut sample);
     }
     sample
 }

@@ -19,6 +19,8 @@ pub struct Effects {
     pub cutouts: bool,
     /// Some surface is a hole in the picture.
     pub holdouts: bool,
+    /// Some object catches shadows.
+    pub catchers: bool,
     /// Some graph asks which path a ray is part of.
     pub light_path: bool,
     /// Some surface is a transmissive solid that absorbs.
@@ -72,6 +74,7 @@ impl Effects {
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| !is_opaque(scene, m)),
             holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
+            catchers: scene.instances.iter().any(|instance| instance.catcher),
             light_path: any(&asks_path),
             absorption: any(&absorbs),
             lamps,
@@ -91,6 +94,7 @@ impl Effects {
             indirect: passes.needs_indirect(),
             cutouts: true,
             holdouts: true,
+            catchers: true,
             light_path: true,
             absorption: true,
             occlusion_maps: true,

@@ -100,6 +100,7 @@ mod tests {
             visibility: Visibility::ALL,
             links: LightLinks::default(),
             holdout: false,
+            catcher: false,
         };
         let scene = SceneDesc { meshes: vec![mesh.into()], instances: vec![instance], ..SceneDesc::default() };
         for aspect in [0.3, 1.0, 3.0] {

@@ -22,13 +22,15 @@ pub mod mask {
     pub const SHADOW_CUTOUT: u64 = 32;
     /// Objects that emit or are unlit.
     pub const EMITTER: u64 = 64;
+    /// Shadow catchers, which shadows on shadow catchers don't count.
+    pub const CATCHER: u64 = 128;
 
     /// Classes of blockers that shadow linking can tell apart: two bits for each.
     pub const BLOCKER_CLASSES: u32 = 28;
     const FIRST_BLOCKER: u32 = 8;
 
     /// The mask of an object; `blocker` is its class where some light has shadow links.
-    pub fn of(visibility: Visibility, cutout: bool, emits: bool, blocker: Option<u32>) -> u64 {
+    pub fn of(visibility: Visibility, cutout: bool, emits: bool, catcher: bool, blocker: Option<u32>) -> u64 {
         let bit = |on: bool, bit: u64| if on { bit } else { 0 };
         let linked = blocker.map_or(0, |class| if cutout { linked_cutout(1 << class) } else { linked(1 << class) });
         bit(visibility.camera, CAMERA)
@@ -37,6 +39,7 @@ pub mod mask {
             | bit(visibility.transmission, TRANSMISSION)
             | bit(visibility.shadow, if cutout { SHADOW_CUTOUT } else { SHADOW } | linked)
             | bit(emits, EMITTER)
+            | bit(catcher, CATCHER)
     }
 
     /// Shadow rays that only the classes of blockers in `classes` stop whole.
@@ -73,6 +76,8 @@ pub struct Instance {
     pub rules: Option<Box<Rules>>,
     /// True where the camera sees a hole in the picture instead.
     pub holdout: bool,
+    /// True where the camera sees nothing of it but the shadows of others on it.
+    pub catcher: bool,
 }
 
 impl Instance {

@@ -76,6 +76,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let camera = camera::prepare(&camera_desc, &desc.render, whole, origin);
 
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    let catchers = desc.instances.iter().any(|instance| instance.catcher);
+    let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
     let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, &mut warnings);

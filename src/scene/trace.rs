@@ -61,6 +61,11 @@ impl Scene {
         Rgb::BLACK
     }
 
+    /// True where a shadow catcher is in the way.
+    pub fn is_caught(&self, ray: &Ray) -> bool {
+        self.bvh.any_hit(ray, mask::CATCHER)
+    }
+
     /// The background lights that shine along the unit direction `d`, with their index and radiance.
     pub fn background(&self, d: Vec3) -> impl Iterator<Item = (u32, &Light, Rgb)> {
         self.lights

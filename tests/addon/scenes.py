@@ -475,3 +475,13 @@ def glow():
     bpy.context.object.data.materials.append(
         mix("Glow", ("ShaderNodeBsdfTransparent", {}), ("ShaderNodeEmission", {"Strength": 3.0}),
             kind="ShaderNodeAddShader"))
+
+
+def catcher():
+    """Shadows on a plane that is not there, in front of nothing."""
+    room()
+    for obj in bpy.context.scene.objects:
+        if obj.type == "MESH" and obj.dimensions.x > 10:
+            obj.is_shadow_catcher = True
+    bpy.context.scene.render.film_transparent = True
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)

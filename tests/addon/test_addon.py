@@ -50,7 +50,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured", "points",
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
              "sky_preetham", "holdout", "thin", "rough_diffuse", "glossy", "stretched", "coated", "cloth", "mixed_shaders",
-             "leaf", "red_film", "glow"]
+             "leaf", "red_film", "glow", "catcher"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
     paths, _ = blender.run("side_by_side", name, tmp_path, 64, 48)
@@ -60,6 +60,9 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
         short = {"Diffuse Direct": "DiffDir", "Diffuse Color": "DiffCol", "Ambient Occlusion": "AO"}.get(layer, layer)
         theirs = [cycles.get(n, cycles.get(f"ViewLayer.{short}.{n[-1]}")) for n in names]
         expected, found = np.dstack(theirs), np.dstack([ours[n] for n in names])
+        if layer == "Combined":
+            expected = np.dstack([expected, cycles["ViewLayer.Combined.A"]])
+            found = np.dstack([found, ours["ViewLayer.Combined.A"]])
         # The noise of the two means: that of differences between pixels, which edges make no smaller.
         noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
         assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise, (name, layer)

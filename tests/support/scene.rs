@@ -70,6 +70,7 @@ impl Builder {
             visibility: Visibility::ALL,
             links: LightLinks::default(),
             holdout: false,
+            catcher: false,
         });
     }
 

@@ -194,6 +194,7 @@ impl BlenderScene {
                 visibility: data.visibility.into(),
                 links: LightLinks::default(),
                 holdout: data.holdout,
+                catcher: data.shadow_catcher,
                 info: ObjectInfo {
                     color: data.color,
                     random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },
@@ -203,12 +204,6 @@ impl BlenderScene {
         }
         if lost > 0 {
             warnings.push(&desc.place, format!("{lost} instances of unknown objects are left out"));
-        }
-        let catchers: Vec<&str> =
-            document.objects.iter().filter(|object| object.shadow_catcher).map(|object| object.name.as_str()).collect();
-        if !catchers.is_empty() {
-            let what = format!("shadow catchers are rendered as the objects that they are: {}", catchers.join(", "));
-            warnings.push(&desc.place, what);
         }
         for (object, data) in document.objects.iter().enumerate() {
             if data.lightgroup.is_empty() && data.receivers.is_none() && data.blockers.is_none() {

@@ -332,6 +332,7 @@ impl Builder<'_> {
                     visibility: penumbra.visible(Visibility::ALL),
                     links: penumbra.links(),
                     holdout: false,
+                    catcher: false,
                 });
             }
         }

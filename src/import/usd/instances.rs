@@ -73,6 +73,7 @@ pub(super) fn place(
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
             holdout: false,
+            catcher: false,
         });
     }
 }

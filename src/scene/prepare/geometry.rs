@@ -76,7 +76,7 @@ pub fn prepare(
         boxes.push(bvh::Instance {
             blas: shape as u32,
             object_to_render: prepared.object_to_render,
-            mask: mask::of(instance.visibility, cutout, emits, links.blocker_class(i)),
+            mask: mask::of(instance.visibility, cutout, emits, instance.catcher, links.blocker_class(i)),
         });
         instances.push(prepared);
         placed.push(i as u32);
@@ -159,5 +159,6 @@ fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_
         receiver_class: 0,
         rules: None,
         holdout: desc.holdout,
+        catcher: desc.catcher,
     })
 }

@@ -276,6 +276,7 @@ mod tests {
                     visibility: crate::desc::Visibility::ALL,
                     links: LightLinks::default(),
                     holdout: false,
+                    catcher: false,
                 });
             }
             let kind = crate::desc::LightKind::Dome { radiance: [1.0; 3], image: None };
