@@ -18,7 +18,7 @@ from usd_judge import LIGHTS, Stage  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 PENUMBRA = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
-ASSETS = ROOT.parent / "shared/assets/usd"
+ASSETS = Path(os.environ.get("PENUMBRA_ASSETS", ROOT.parent / "shared/assets")) / "usd"
 STAGES = sorted([*ASSETS.rglob("*.usd*"), *(ROOT / "tests/usd/stages").glob("*.usd*")])
 
 # Stages that OpenUSD itself does not answer for, or where it is known to answer something else.
@@ -274,7 +274,6 @@ def judge_cameras(stage, answer, found):
         found.check(expected["lens"] is not None or camera["lens"] is None, path, "has a lens")
 
 
-@pytest.mark.skipif(not ASSETS.is_dir(), reason=f"{ASSETS} is not there")
 @pytest.mark.parametrize("path", STAGES, ids=lambda path: "/".join(path.parts[-3:]))
 def test_stages_are_read_as_openusd_reads_them(path):
     if path.name in NOT_JUDGED:
@@ -285,6 +284,36 @@ def test_stages_are_read_as_openusd_reads_them(path):
         pytest.skip(f"usd-core does not open it: {str(error).splitlines()[0]}")
     found = judge(path)
     assert not found, "\n".join(found[:20])
+
+
+@pytest.mark.parametrize("frame", [None, 2.5, 3, 4.25, 5])
+def test_joints_and_blend_shapes_move_points_as_openusd_has_it(frame):
+    path = ROOT / "tests/usd/stages/skel.usda"
+    args = [] if frame is None else ["--frame", frame]
+    found = judge(path, *args, frame=frame)
+    assert not found, "\n".join(found)
+    stage, answer, judged = Stage(path, frame), Answer(read(path, *args)), 0
+    for prim in stage.of_type("Mesh"):
+        (instance,) = answer.instances[str(prim.GetPath())]
+        mesh = answer.meshes[instance["mesh"]]
+        to_world = lambda points, matrix: np.asarray(points, dtype=float) @ matrix[:3, :3] + matrix[3, :3]
+        ours = to_world(mesh["points"], np.reshape(instance["matrix"], (4, 4)))
+        points, faces = stage.faces(prim)
+        expected = to_world(points, stage.world(prim))
+        assert np.abs(ours - expected).max() <= 1e-5 * np.ptp(expected, axis=0).max(), prim
+        normals = np.array(UsdGeom.Mesh(prim).GetNormalsAttr().Get(stage.time) or [], dtype=float)
+        if len(normals) == 0:
+            continue
+        corners = np.concatenate([corners for _, corners in faces])
+        by_corner = len(normals) == len(corners)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        at_points = {point: normals[corners == point] if by_corner else normals[[point]] for point in range(len(points))}
+        # Where normals are those of points, so are ours.
+        used = np.ravel(mesh["triangles"]) if by_corner else np.arange(len(points))
+        for point, normal in zip(used, mesh["normals"]["values"], strict=True):
+            assert np.abs(at_points[point] - normal).max(axis=1).min() < 1e-5, f"{prim}: {point} has {normal}"
+        judged += 1
+    assert judged >= 6
 
 
 HEAD = '#usda 1.0\n(\n    metersPerUnit = 0.1\n    upAxis = "Z"\n    startTimeCode = 3\n    endTimeCode = 9\n{}\n)\n'

@@ -6,7 +6,7 @@ Matrices are those of USD, for row vectors: the rows are the images of the axes 
 import math
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, Vt
+from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel, Vt
 
 Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
 LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
@@ -48,8 +48,31 @@ class Stage:
         self.meters = meters if 0 < meters < math.inf else 0.01
         self.z_up = UsdGeom.GetStageUpAxis(self.stage) == "Z"
         self.to_world = np.diag([self.meters] * 3 + [1.0]) @ (Z_UP_TO_Y_UP if self.z_up else np.eye(4))
+        self.bake()
         self.xforms = UsdGeom.XformCache(self.time)
         self.blender = self.stage.GetRootLayer().documentation.startswith("Blender v")
+
+    def bake(self):
+        """Points, normals and transforms as joints and blend shapes have them, in the session layer."""
+        self.stage.SetEditTarget(self.stage.GetSessionLayer())
+        everywhere = lambda kind: [
+            prim for prim in Usd.PrimRange.Stage(self.stage, Usd.TraverseInstanceProxies()) if prim.IsA(kind)
+        ]
+        # Instances can't be baked.
+        while roots := [prim for prim in everywhere(UsdSkel.Root) if prim.IsInstance() or prim.IsInstanceProxy()]:
+            instance = roots[0]
+            while not instance.IsInstance():
+                instance = instance.GetParent()
+            instance.SetInstanceable(False)
+        time = self.time.GetValue() if self.time != Usd.TimeCode.EarliestTime() else 0.0
+        # Only what has a sample at the time is baked there.
+        for animation in everywhere(UsdSkel.Animation):
+            for name in ("translations", "rotations", "scales", "blendShapeWeights"):
+                attribute = animation.GetAttribute(name)
+                if attribute.GetNumTimeSamples() > 1:
+                    attribute.Set(attribute.Get(time), time)
+        for root in everywhere(UsdSkel.Root):
+            UsdSkel.BakeSkinning(UsdSkel.Root(root), Gf.Interval(time, time))
 
     def world(self, prim):
         return np.array(self.xforms.GetLocalToWorldTransform(prim)) @ self.to_world

@@ -25,6 +25,8 @@ pub(in super::super) struct Inherited {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Binding {
     skeleton: Option<Path>,
+    /// True where one is named that is not there, which is told.
+    lost: bool,
     indices: Option<Path>,
     weights: Option<Path>,
     bind: Option<Path>,
@@ -75,8 +77,15 @@ impl Inherited {
             }
             let path = || prim.path().append_property(name.clone()).ok();
             match (name.as_str(), &mut own.binding) {
-                ("skel:animationSource", _) => own.animation = target(reading, prim, name, "SkelAnimation"),
-                ("skel:skeleton", Some(binding)) => binding.skeleton = target(reading, prim, name, "Skeleton"),
+                ("skel:animationSource", _) => own.animation = animation_source(reading, prim, name),
+                ("skel:skeleton", Some(binding)) => {
+                    let target = target(prim, name, "Skeleton");
+                    binding.lost = target.is_err();
+                    binding.skeleton = target.unwrap_or_else(|what| {
+                        reading.warn(prim.path(), format!("{what}; what follows it stands as modelled"));
+                        None
+                    });
+                }
                 ("skel:skeleton", None) if &*kind.name != "Skeleton" => {
                     reading.warn(prim.path(), "is bound to a skeleton outside of any SkelRoot; it stands as modelled");
                 }
@@ -138,6 +147,9 @@ impl Inherited {
             return None;
         }
         let Some(skeleton) = binding.skeleton.clone() else {
+            if binding.lost {
+                return None;
+            }
             reading.warn(prim.path(), "follows joints or blend shapes of no skeleton; it stands as modelled");
             return None;
         };
@@ -169,22 +181,23 @@ fn applies(reading: &Reading<'_>, prim: &Prim, names: &[Token]) -> bool {
     applies
 }
 
-/// The first target of relationship `name`, which is to be a prim of type `kind`.
-fn target(reading: &Reading<'_>, prim: &Prim, name: &Token, kind: &str) -> Option<Path> {
+/// The first target of relationship `name`, if any, which is to be a prim of type `kind`; what is wrong as an error.
+fn target(prim: &Prim, name: &Token, kind: &str) -> Result<Option<Path>, String> {
     let targets = prim.relationship(name.clone()).forwarded_targets().unwrap_or_default();
-    let target = targets.into_iter().next()?;
-    let found = reading.stage.prim(&target).ok().filter(|found| found.is_valid().unwrap_or(false));
-    match found.and_then(|found| found.type_name().ok().flatten()) {
-        Some(found) if found.as_str() == kind => Some(target),
-        Some(found) => {
-            reading.warn(prim.path(), format!("{name} leads to {target}, a {found}, not a {kind}; it is left out"));
-            None
-        }
-        None => {
-            reading.warn(prim.path(), format!("{name} leads to {target}, where no {kind} is; it is left out"));
-            None
-        }
+    let Some(target) = targets.into_iter().next() else { return Ok(None) };
+    let found = prim.stage().prim(&target).ok().filter(|found| found.is_valid().unwrap_or(false));
+    match found.map(|found| found.type_name().ok().flatten().unwrap_or_default()) {
+        Some(found) if found.as_str() == kind => Ok(Some(target)),
+        Some(found) => Err(format!("{name} leads to {target}, a {found}, not a {kind}")),
+        None => Err(format!("{name} leads to {target}, where no {kind} is")),
     }
+}
+
+fn animation_source(reading: &Reading<'_>, prim: &Prim, name: &Token) -> Option<Path> {
+    target(prim, name, "SkelAnimation").unwrap_or_else(|what| {
+        reading.warn(prim.path(), format!("{what}; the rest pose is used"));
+        None
+    })
 }
 
 /// Where `skeleton` gets its poses from: what it names, or the nearest prim above it that does.
@@ -197,7 +210,7 @@ fn animation(reading: &Reading<'_>, skeleton: &Path, walked: &[(Path, Option<Pat
         let Ok(prim) = reading.stage.prim(&path) else { continue };
         let names = prim.authored_property_names().unwrap_or_default();
         if names.contains(&name) && prim.has_api_schema(API).unwrap_or(false) {
-            return target(reading, &prim, &name, "SkelAnimation");
+            return animation_source(reading, &prim, &name);
         }
     }
     None
