@@ -191,7 +191,7 @@ def judge_mesh(stage, prim, faces, instance, answer, found):
             expected = -expected
         size = np.abs(area(ours[triangles].astype(float))).sum()
         found.check(np.abs(sums - expected).max() <= 1e-5 * max(size, 1e-30), path, f"faces {sums}, not {expected}")
-        judge_uvs(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
+        judge_primvars(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
     if prim.HasAPI(UsdLux.LightAPI):
         return
     slots = set(mesh["material_slots"] or [0])
@@ -202,15 +202,31 @@ def judge_mesh(stage, prim, faces, instance, answer, found):
     found.check(names == expected, path, f"has the materials {names}, not {expected}")
 
 
-def judge_uvs(stage, prim, kept, points, ours, triangles, mesh, found):
-    path, expected = str(prim.GetPath()), stage.uv_corners(prim, kept)
-    if expected is None or not mesh["uvs"]:
-        return
-    uvs = np.array(mesh["uvs"][0]["values"], dtype=float).reshape(-1, 2)
-    uvs = uvs[triangles.ravel()] if mesh["uvs"][0]["per"] == "point" else uvs
+def judge_primvars(stage, prim, kept, points, ours, triangles, mesh, found):
+    """UVs, normals and colours of every corner, wherever it lies; `ours` are the points of the triangles."""
+
+    def judge(what, values, expected):
+        if values is None or expected is None:
+            return
+        flat = np.array(values["values"], dtype=float).reshape(-1, expected.shape[1])
+        flat = flat[triangles.ravel()] if values["per"] == "point" else flat
+        found.check(len(flat) == len(ours), path, f"has {len(flat)} {what} for {len(ours)} corners")
+        pairs = lambda points, values: rows(np.hstack([points / size, values / np.abs(expected).max()]), 4)
+        same = len(flat) == len(ours) and near(pairs(ours, flat), pairs(points, expected), 3e-4)
+        found.check(same, path, f"has other {what}")
+
+    path, size = str(prim.GetPath()), max(np.abs(points).max(), 1e-30)
+    uvs = stage.corners(prim, kept, "st", 2)
     # The image's top row is v = 0 in Penumbra.
-    pairs = np.hstack([points, np.stack([expected[:, 0], 1.0 - expected[:, 1]], axis=-1)])
-    found.check(near(rows(np.hstack([ours, uvs]), 4), rows(pairs, 4), 3e-4), path, "has other UVs")
+    judge("UVs", mesh["uvs"][0] if mesh["uvs"] else None, uvs if uvs is None else uvs * [1, -1] + [0, 1])
+    normals = stage.normal_corners(prim, kept)
+    found.check(normals is None or mesh["normals"] is not None, path, "lost its normals")
+    judge("normals", mesh["normals"], normals)
+    colors, opacities = stage.corners(prim, kept, "displayColor", 3), stage.corners(prim, kept, "displayOpacity", 1)
+    if colors is not None or opacities is not None:
+        colors = np.full((len(points), 3), 0.5) if colors is None else np.maximum(colors, 0.0)
+        opacities = np.ones((len(points), 1)) if opacities is None else np.clip(opacities, 0.0, 1.0)
+        judge("colours", mesh["colors"], np.hstack([colors, opacities]))
 
 
 def judge_lights(stage, answer, found):

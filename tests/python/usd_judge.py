@@ -150,12 +150,29 @@ class Stage:
         kept = [(i, indices[ends[i] - n : ends[i]]) for i, n in enumerate(counts) if n >= 3 and i not in holes]
         return points, kept
 
-    def uv_corners(self, prim, faces):
-        """`st` of every corner of `faces`; `None` where there is none that fits."""
-        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("st")
+    def corners(self, prim, faces, name, width):
+        """The primvar `name`, of `width` numbers, of every corner of `faces`; `None` where there is none that fits."""
+        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
         values = primvar.ComputeFlattened(self.time) if primvar else None
-        values = np.array(values if values is not None else [], dtype=np.float32)
-        if values.ndim != 2 or values.shape[1] != 2:
+        return self.spread(prim, faces, primvar.GetInterpolation(), values, width) if values else None
+
+    def normal_corners(self, prim, faces):
+        """The normal of every corner, of unit length; `None` for surfaces that are smooth, or without any."""
+        mesh = UsdGeom.Mesh(prim)
+        if mesh.GetSubdivisionSchemeAttr().Get(self.time) != "none":
+            return None
+        normals = self.corners(prim, faces, "normals", 3)
+        values = mesh.GetNormalsAttr().Get(self.time)
+        # The primvar comes before the attribute.
+        if normals is None and values and not UsdGeom.PrimvarsAPI(prim).HasPrimvar("normals"):
+            normals = self.spread(prim, faces, mesh.GetNormalsInterpolation(), values, 3)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True) if normals is not None else np.zeros(1)
+        return normals / lengths if (lengths > 0).all() else None
+
+    def spread(self, prim, faces, interpolation, values, width):
+        values = np.array(values, dtype=np.float32)
+        values = values.reshape(len(values), -1)
+        if values.shape[1] != width:
             return None
         counts = UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(self.time)
         starts = np.concatenate([[0], np.cumsum(counts)])
@@ -165,7 +182,7 @@ class Stage:
             "vertex": lambda face, corners: corners,
             "varying": lambda face, corners: corners,
             "faceVarying": lambda face, corners: np.arange(starts[face], starts[face + 1]),
-        }[primvar.GetInterpolation()]
+        }[interpolation]
         picked = np.concatenate([pick(face, corners) for face, corners in faces] or [np.zeros(0, int)])
         return values[picked] if len(picked) == 0 or picked.max() < len(values) else None
 

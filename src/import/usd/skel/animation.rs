@@ -57,11 +57,12 @@ impl Animation {
     /// The weight of each blend shape at `time`.
     pub fn weights(&self, reading: &Reading<'_>, time: TimeCode) -> Vec<f32> {
         let value = reading.value_of::<Value>(&self.prim.attribute("blendShapeWeights"), time);
-        let weights = value.and_then(scalars).unwrap_or_default().into_flattened();
-        if weights.len() != self.blend_shapes.len() {
-            let (have, want) = (weights.len(), self.blend_shapes.len());
-            reading.warn(self.path(), format!("has {have} blendShapeWeights for {want} blend shapes; they are 0"));
-            return vec![0.0; want];
+        let mut weights = value.and_then(scalars).unwrap_or_default().into_flattened();
+        let (have, want) = (weights.len(), self.blend_shapes.len());
+        if have != want {
+            let instead = if have > want { "the first ones are used" } else { "the others are 0" };
+            reading.warn(self.path(), format!("has {have} blendShapeWeights for {want} blend shapes; {instead}"));
+            weights.resize(want, 0.0);
         }
         weights
     }

@@ -37,8 +37,13 @@ pub(super) struct Follows {
 }
 
 impl Follows {
-    /// How `prim` follows `skeleton`, and how many joints it may follow.
-    pub fn read(reading: &Reading<'_>, prim: &Prim, bound: &Bound, skeleton: &Skeleton) -> (Self, usize) {
+    /// How `prim` follows `skeleton`, and how many joints it may follow; what is wrong as an error.
+    pub fn read(
+        reading: &Reading<'_>,
+        prim: &Prim,
+        bound: &Bound,
+        skeleton: &Skeleton,
+    ) -> Result<(Self, usize), String> {
         let attribute = |path: &Option<_>| path.as_ref().and_then(|path| reading.stage.attribute(path).ok());
         let bind = attribute(&bound.bind)
             .and_then(|bind| reading.value_of::<openusd::gf::Matrix4d>(&bind, reading.time))
@@ -47,11 +52,7 @@ impl Follows {
         let method = match method.as_ref().map_or("classicLinear", Token::as_str) {
             "classicLinear" => Method::Linear,
             "dualQuaternion" => Method::DualQuaternion,
-            other => {
-                let what = format!("there is no skinningMethod '{other}'; classicLinear is used");
-                reading.warn(prim.path(), what);
-                Method::Linear
-            }
+            other => return Err(format!("there is no skinningMethod '{other}'")),
         };
         let joints = attribute(&bound.joints).and_then(|joints| reading.value_of::<Vec<Token>>(&joints, reading.time));
         let joints = joints.map(|joints| {
@@ -67,7 +68,7 @@ impl Follows {
         });
         let count = joints.as_ref().map_or(skeleton.joints.len(), Vec::len);
         let between = Between::new(reading, &bound.skeleton, prim.path());
-        (Self { method, bind, joints, between }, count)
+        Ok((Self { method, bind, joints, between }, count))
     }
 
     /// The joints at `time`, and the skeleton's space to the prim's; `None` where one of them can't be told.
@@ -180,17 +181,18 @@ fn add(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// How the points of `prim` follow joints; `None`, with a warning, where that is broken.
-fn bones(
+/// How the `count` elements of `prim` follow joints; `None`, with a warning, where that is broken.
+pub(super) fn bones(
     reading: &Reading<'_>,
     prim: &Prim,
     bound: &Bound,
     skeleton: &Skeleton,
     count: usize,
 ) -> Option<(Follows, Influences)> {
-    let (follows, joints) = Follows::read(reading, prim, bound, skeleton);
-    match Influences::read(reading, bound, count, joints) {
-        Ok(influences) => Some((follows, influences)),
+    let read = Follows::read(reading, prim, bound, skeleton)
+        .and_then(|(follows, joints)| Ok((follows, Influences::read(reading, bound, count, joints)?)));
+    match read {
+        Ok(bones) => Some(bones),
         Err(what) => {
             reading.warn(prim.path(), format!("{what}; it stands as modelled"));
             None

@@ -7,7 +7,7 @@ use openusd::usd::{Prim, TimeCode};
 use super::super::inherit::{Clock, Mover, Pose};
 use super::super::stage::Reading;
 use super::Bound;
-use super::deformer::Follows;
+use super::deformer::{Follows, bones};
 use super::influences::Influences;
 use super::skeleton::Skeleton;
 use crate::math::DAffine3;
@@ -23,14 +23,8 @@ impl Rigid {
     /// That of `prim`; `None`, with a warning, where it is broken.
     fn read(reading: &Reading<'_>, prim: &Prim, bound: &Bound) -> Option<Self> {
         let skeleton = reading.skeletons.of(reading, &bound.skeleton, bound.animation.as_ref())?;
-        let (follows, joints) = Follows::read(reading, prim, bound, &skeleton);
-        match Influences::read(reading, bound, 1, joints) {
-            Ok(influences) => Some(Self { skeleton, follows, influences }),
-            Err(what) => {
-                reading.warn(prim.path(), format!("{what}; it stands as modelled"));
-                None
-            }
-        }
+        let (follows, influences) = bones(reading, prim, bound, &skeleton, 1)?;
+        Some(Self { skeleton, follows, influences })
     }
 
     /// What comes before the prim's own transform at `time`.
