@@ -95,8 +95,8 @@ pub(super) fn read(
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
     }
-    if let Some(deformer) = &deformer {
-        deformer.normals(&mut primvars.normals, &[]);
+    if let (Some(deformer), Some(normals)) = (&deformer, &mut primvars.normals) {
+        deformer.normals(normals, &[]);
     }
     if from_hermite {
         // The points are the ends of the pieces.

@@ -58,7 +58,7 @@ pub(super) fn read(
         primvars.normals = primvar::array(reading, &normals, triples, Interpolation::Vertex);
     }
     if let Some(deformer) = &deformer {
-        deformer.normals(&mut primvars.normals, &indices);
+        primvars.normals = deformer.of_surface(primvars.normals, &indices);
     }
     let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
     let motion = shutter.map_or_else(Vec::new, moved);
@@ -99,7 +99,7 @@ pub(super) fn read_tetrahedra(
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
     }
     if let Some(deformer) = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len())) {
-        deformer.normals(&mut primvars.normals, &indices);
+        primvars.normals = deformer.of_surface(primvars.normals, &indices);
         points = deformer.points(points, reading.time);
     }
     Some(Mesh {

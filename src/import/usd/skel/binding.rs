@@ -86,7 +86,7 @@ impl Inherited {
                         None
                     });
                 }
-                ("skel:skeleton", None) if &*kind.name != "Skeleton" => {
+                ("skel:skeleton", None) => {
                     reading.warn(prim.path(), "is bound to a skeleton outside of any SkelRoot; it stands as modelled");
                 }
                 ("primvars:skel:jointIndices", Some(binding)) => binding.indices = path(),
@@ -209,7 +209,7 @@ fn animation(reading: &Reading<'_>, skeleton: &Path, walked: &[(Path, Option<Pat
         }
         let Ok(prim) = reading.stage.prim(&path) else { continue };
         let names = prim.authored_property_names().unwrap_or_default();
-        if names.contains(&name) && prim.has_api_schema(API).unwrap_or(false) {
+        if names.contains(&name) && applies(reading, &prim, &names) {
             return animation_source(reading, &prim, &name);
         }
     }

@@ -154,7 +154,8 @@ mod tests {
     fn at(weight: f32) -> f32 {
         let step = |weight, x| Step { weight, offsets: vec![[x, 0.0, 0.0]], normals: Vec::new() };
         let none = Step { weight: 0.0, offsets: Vec::new(), normals: Vec::new() };
-        let shape = BlendShape { points: Some(vec![1]), steps: vec![step(-0.5, 3.0), none, step(0.25, 8.0), step(1.0, 2.0)] };
+        let shape =
+            BlendShape { points: Some(vec![1]), steps: vec![step(-0.5, 3.0), none, step(0.25, 8.0), step(1.0, 2.0)] };
         let mut values = [[0.0; 3]; 2];
         shape.mix(weight).for_each(|(step, share)| shape.add(&step.offsets, share, &mut values));
         assert_eq!(values[0], [0.0; 3]);

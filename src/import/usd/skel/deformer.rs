@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use openusd::gf::Matrix4d;
 use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::Interpolation;
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 
 use super::super::shape::primvar::Data;
 use super::super::stage::Reading;
-use super::super::xform::affine;
+use super::super::xform::{Xform, affine};
 use super::Bound;
 use super::blend_shape::BlendShapes;
 use super::influences::Influences;
@@ -46,7 +47,7 @@ impl Follows {
     ) -> Result<(Self, usize), String> {
         let attribute = |path: &Option<_>| path.as_ref().and_then(|path| reading.stage.attribute(path).ok());
         let bind = attribute(&bound.bind)
-            .and_then(|bind| reading.value_of::<openusd::gf::Matrix4d>(&bind, reading.time))
+            .and_then(|bind| reading.value_of::<Matrix4d>(&bind, reading.time))
             .map_or(DAffine3::IDENTITY, |bind| affine(&bind.0));
         let method = attribute(&bound.method).and_then(|method| reading.value_of::<Token>(&method, reading.time));
         let method = match method.as_ref().map_or("classicLinear", Token::as_str) {
@@ -85,7 +86,7 @@ impl Follows {
     }
 
     /// The transforms on the way that change with time.
-    pub fn varying(&self) -> impl Iterator<Item = &super::super::xform::Xform> {
+    pub fn varying(&self) -> impl Iterator<Item = &Xform> {
         self.between.varying()
     }
 }
@@ -96,7 +97,8 @@ impl<'a> Deformer<'a> {
         let skeleton = reading.skeletons.of(reading, &bound.skeleton, bound.animation.as_ref())?;
         let by_points = bound.influences.is_some() && !bound.rigid;
         let bones = by_points.then(|| bones(reading, prim, bound, &skeleton, count)).flatten();
-        let shapes = bound.shapes.then(|| BlendShapes::read(reading, prim, skeleton.animation.as_ref(), count)).flatten();
+        let shapes =
+            bound.shapes.then(|| BlendShapes::read(reading, prim, skeleton.animation.as_ref(), count)).flatten();
         (bones.is_some() || shapes.is_some()).then_some(Self { reading, skeleton, count, bones, shapes })
     }
 
@@ -117,17 +119,25 @@ impl<'a> Deformer<'a> {
         points
     }
 
-    /// Turns `normals` with the surface. `corners` are the points of face-varying ones. Normals of whole faces
-    /// are left out: those that the faces then have are right.
-    pub fn normals(&self, normals: &mut Option<Data<3>>, corners: &[i32]) {
-        let Some(mut data) = normals.take() else { return };
+    /// `normals` of a surface turned with it. `corners` are the points of face-varying ones. Those of whole faces
+    /// are left out: what the faces themselves then have is right.
+    pub fn of_surface(&self, normals: Option<Data<3>>, corners: &[i32]) -> Option<Data<3>> {
+        let is_of_points = |how| !matches!(how, Interpolation::Constant | Interpolation::Uniform);
+        let mut normals = normals.filter(|normals| is_of_points(normals.interpolation))?;
+        self.normals(&mut normals, corners);
+        Some(normals)
+    }
+
+    /// Turns the normals `data` of points, and of `corners`, with what they stand on; others stay.
+    pub fn normals(&self, data: &mut Data<3>, corners: &[i32]) {
         let at_corners = match data.interpolation {
             Interpolation::Vertex | Interpolation::Varying => false,
             Interpolation::FaceVarying => true,
             Interpolation::Constant | Interpolation::Uniform => return,
         };
         if let Some(indices) = data.indices.take() {
-            let value = |i: &i32| usize::try_from(*i).ok().and_then(|i| data.values.get(i)).copied().unwrap_or_default();
+            let value =
+                |i: &i32| usize::try_from(*i).ok().and_then(|i| data.values.get(i)).copied().unwrap_or_default();
             data.values = indices.iter().map(value).collect();
         }
         let point = |i: usize| if at_corners { usize::try_from(*corners.get(i)?).ok() } else { Some(i) };
@@ -156,7 +166,6 @@ impl<'a> Deformer<'a> {
                 *normal = turned.normalize_or_zero().as_vec3().into();
             });
         }
-        *normals = Some(data);
     }
 
     /// Times from `open` to `close` at which the deformation has a sample; `None` where it never changes.

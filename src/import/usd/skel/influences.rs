@@ -47,7 +47,8 @@ impl Influences {
                 elements * per
             ));
         }
-        let known = |&index: &i32| usize::try_from(index).ok().filter(|&index| index < joints).map(|index| index as u32);
+        let known =
+            |&index: &i32| usize::try_from(index).ok().filter(|&index| index < joints).map(|index| index as u32);
         let indices: Option<Vec<u32>> = found.iter().map(known).collect();
         let indices = indices.ok_or_else(|| format!("has joint indices out of range; there are {joints} joints"))?;
         Ok(Self { per, joints: indices, weights })

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use openusd::usd::{Prim, TimeCode};
+use openusd::usd::{Attribute, Prim, TimeCode};
 
 use super::super::inherit::{Clock, Mover, Pose};
 use super::super::stage::Reading;
@@ -41,7 +41,7 @@ pub(in super::super) fn place(clock: &mut Clock<'_, '_>, prim: &Prim, bound: &Bo
     let Some(local) = rigid.at(reading, reading.time) else { return pose.clone() };
     let frame = reading.time.value();
     let attributes = rigid.skeleton.animation.as_ref().map(|animation| animation.attributes()).unwrap_or_default();
-    let varies = |attribute: &openusd::usd::Attribute| attribute.value_might_be_time_varying().unwrap_or(false);
+    let varies = |attribute: &Attribute| attribute.value_might_be_time_varying().unwrap_or(false);
     let moves = attributes.iter().any(varies) || rigid.follows.varying().next().is_some();
     let motion = (moves && !clock.times.is_empty()).then(|| {
         let at = |time: &f64| rigid.at(reading, TimeCode::new(frame + time)).unwrap_or(local);
