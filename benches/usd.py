@@ -7,8 +7,9 @@
 prints, for each stage, from inside a process of its own, start and exit not counted: the seconds in which the file
 becomes a scene description (`penumbra info --json` tells), those in which OpenUSD opens it and copies the same arrays
 or world transforms, and their ratio. Then the same as whole processes, `penumbra info` beside Python with OpenUSD,
-Penumbra's peak memory, and the seconds to the first ray: a whole `penumbra render` of one sample on 8 × 8 pixels.
-Medians over rounds in turn.
+Penumbra's peak memory, the seconds from the start of `penumbra render` until its first ray was traced (the stage read,
+the scene prepared, one sample of one pixel), and those of a whole render of one sample on 8 × 8 pixels. Medians over
+rounds in turn.
 """
 
 import argparse
@@ -141,6 +142,16 @@ def seconds(run):
     return time.perf_counter() - start
 
 
+def first_ray(program, path):
+    """Seconds from the start of the program until it tells of its first ray."""
+    command = [program, "render", path, "--size", "8x8", "--debug-sample", "4,4,0"]
+    start = time.perf_counter()
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
+        if not run.stdout.readline():
+            sys.exit(f"{path}: no sample was traced")
+        return time.perf_counter() - start
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--penumbra", type=Path, default=ROOT / "target/release/penumbra", metavar="FILE")
@@ -152,8 +163,8 @@ def main():
     run = lambda *args: subprocess.run(args, check=True, capture_output=True, text=True).stdout
     program = lambda *args: run(options.penumbra, *args)
     print(f"load before: {os.getloadavg()[0]:.1f}\n")
-    print("| stage | Penumbra, s | OpenUSD, s | ratio | whole `info`, s | whole Python, s | MiB | first ray, s |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| stage | Penumbra, s | OpenUSD, s | ratio | whole `info`, s | whole Python, s | MiB | first ray, s | render, s |")
+    print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         million(folder)
@@ -171,13 +182,14 @@ def main():
                 theirs = float(run(sys.executable, __file__, "--by-openusd", path))
                 rounds.append((ours, theirs, whole, time.perf_counter() - start))
             out = ("-o", folder / "out.exr", "--size", "8x8", "--spp", "1", "--progress", "none")
-            first = statistics.median(seconds(lambda: program("render", path, *out)) for _ in range(3))
+            whole = statistics.median(seconds(lambda: program("render", path, *out)) for _ in range(3))
+            first = statistics.median(first_ray(options.penumbra, path) for _ in range(3))
             once = [sys.executable, "-c", "import resource,subprocess,sys; subprocess.run(sys.argv[1:], capture_output=True);"
                     "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)", options.penumbra, "info", path]
             peak = int(subprocess.run([str(part) for part in once], capture_output=True, text=True).stdout) / 1024
             ours, theirs, *wholes = map(statistics.median, zip(*rounds))
             cells = [f"{ours:.3f}", f"{theirs:.3f}", f"{ours / theirs:.2f}", *(f"{whole:.2f}" for whole in wholes)]
-            print("|", " | ".join([file, *cells, f"{peak:.0f}", f"{first:.2f}"]), "|", flush=True)
+            print("|", " | ".join([file, *cells, f"{peak:.0f}", f"{first:.2f}", f"{whole:.2f}"]), "|", flush=True)
 
 
 if __name__ == "__main__":

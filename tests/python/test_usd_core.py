@@ -18,7 +18,7 @@ from usd_judge import LIGHTS, Stage  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 PENUMBRA = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
-ASSETS = ROOT.parent / "shared/assets/usd"
+ASSETS = Path(os.environ.get("PENUMBRA_ASSETS", ROOT.parent / "shared/assets")) / "usd"
 STAGES = sorted([*ASSETS.rglob("*.usd*"), *(ROOT / "tests/usd/stages").glob("*.usd*")])
 
 # Stages that OpenUSD itself does not answer for, or where it is known to answer something else.
@@ -191,7 +191,7 @@ def judge_mesh(stage, prim, faces, instance, answer, found):
             expected = -expected
         size = np.abs(area(ours[triangles].astype(float))).sum()
         found.check(np.abs(sums - expected).max() <= 1e-5 * max(size, 1e-30), path, f"faces {sums}, not {expected}")
-        judge_uvs(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
+        judge_primvars(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
     if prim.HasAPI(UsdLux.LightAPI):
         return
     slots = set(mesh["material_slots"] or [0])
@@ -202,15 +202,31 @@ def judge_mesh(stage, prim, faces, instance, answer, found):
     found.check(names == expected, path, f"has the materials {names}, not {expected}")
 
 
-def judge_uvs(stage, prim, kept, points, ours, triangles, mesh, found):
-    path, expected = str(prim.GetPath()), stage.uv_corners(prim, kept)
-    if expected is None or not mesh["uvs"]:
-        return
-    uvs = np.array(mesh["uvs"][0]["values"], dtype=float).reshape(-1, 2)
-    uvs = uvs[triangles.ravel()] if mesh["uvs"][0]["per"] == "point" else uvs
+def judge_primvars(stage, prim, kept, points, ours, triangles, mesh, found):
+    """UVs, normals and colours of every corner, wherever it lies; `ours` are the points of the triangles."""
+
+    def judge(what, values, expected):
+        if values is None or expected is None:
+            return
+        flat = np.array(values["values"], dtype=float).reshape(-1, expected.shape[1])
+        flat = flat[triangles.ravel()] if values["per"] == "point" else flat
+        found.check(len(flat) == len(ours), path, f"has {len(flat)} {what} for {len(ours)} corners")
+        pairs = lambda points, values: rows(np.hstack([points / size, values / np.abs(expected).max()]), 4)
+        same = len(flat) == len(ours) and near(pairs(ours, flat), pairs(points, expected), 3e-4)
+        found.check(same, path, f"has other {what}")
+
+    path, size = str(prim.GetPath()), max(np.abs(points).max(), 1e-30)
+    uvs = stage.corners(prim, kept, "st", 2)
     # The image's top row is v = 0 in Penumbra.
-    pairs = np.hstack([points, np.stack([expected[:, 0], 1.0 - expected[:, 1]], axis=-1)])
-    found.check(near(rows(np.hstack([ours, uvs]), 4), rows(pairs, 4), 3e-4), path, "has other UVs")
+    judge("UVs", mesh["uvs"][0] if mesh["uvs"] else None, uvs if uvs is None else uvs * [1, -1] + [0, 1])
+    normals = stage.normal_corners(prim, kept)
+    found.check(normals is None or mesh["normals"] is not None, path, "lost its normals")
+    judge("normals", mesh["normals"], normals)
+    colors, opacities = stage.corners(prim, kept, "displayColor", 3), stage.corners(prim, kept, "displayOpacity", 1)
+    if colors is not None or opacities is not None:
+        colors = np.full((len(points), 3), 0.5) if colors is None else np.maximum(colors, 0.0)
+        opacities = np.ones((len(points), 1)) if opacities is None else np.clip(opacities, 0.0, 1.0)
+        judge("colours", mesh["colors"], np.hstack([colors, opacities]))
 
 
 def judge_lights(stage, answer, found):
@@ -274,7 +290,6 @@ def judge_cameras(stage, answer, found):
         found.check(expected["lens"] is not None or camera["lens"] is None, path, "has a lens")
 
 
-@pytest.mark.skipif(not ASSETS.is_dir(), reason=f"{ASSETS} is not there")
 @pytest.mark.parametrize("path", STAGES, ids=lambda path: "/".join(path.parts[-3:]))
 def test_stages_are_read_as_openusd_reads_them(path):
     if path.name in NOT_JUDGED:
@@ -285,6 +300,36 @@ def test_stages_are_read_as_openusd_reads_them(path):
         pytest.skip(f"usd-core does not open it: {str(error).splitlines()[0]}")
     found = judge(path)
     assert not found, "\n".join(found[:20])
+
+
+@pytest.mark.parametrize("frame", [None, 2.5, 3, 4.25, 5])
+def test_joints_and_blend_shapes_move_points_as_openusd_has_it(frame):
+    path = ROOT / "tests/usd/stages/skel.usda"
+    args = [] if frame is None else ["--frame", frame]
+    found = judge(path, *args, frame=frame)
+    assert not found, "\n".join(found)
+    stage, answer, judged = Stage(path, frame), Answer(read(path, *args)), 0
+    for prim in stage.of_type("Mesh"):
+        (instance,) = answer.instances[str(prim.GetPath())]
+        mesh = answer.meshes[instance["mesh"]]
+        to_world = lambda points, matrix: np.asarray(points, dtype=float) @ matrix[:3, :3] + matrix[3, :3]
+        ours = to_world(mesh["points"], np.reshape(instance["matrix"], (4, 4)))
+        points, faces = stage.faces(prim)
+        expected = to_world(points, stage.world(prim))
+        assert np.abs(ours - expected).max() <= 1e-5 * np.ptp(expected, axis=0).max(), prim
+        normals = np.array(UsdGeom.Mesh(prim).GetNormalsAttr().Get(stage.time) or [], dtype=float)
+        if len(normals) == 0:
+            continue
+        corners = np.concatenate([corners for _, corners in faces])
+        by_corner = len(normals) == len(corners)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        at_points = {point: normals[corners == point] if by_corner else normals[[point]] for point in range(len(points))}
+        # Where normals are those of points, so are ours.
+        used = np.ravel(mesh["triangles"]) if by_corner else np.arange(len(points))
+        for point, normal in zip(used, mesh["normals"]["values"], strict=True):
+            assert np.abs(at_points[point] - normal).max(axis=1).min() < 1e-5, f"{prim}: {point} has {normal}"
+        judged += 1
+    assert judged >= 6
 
 
 HEAD = '#usda 1.0\n(\n    metersPerUnit = 0.1\n    upAxis = "Z"\n    startTimeCode = 3\n    endTimeCode = 9\n{}\n)\n'

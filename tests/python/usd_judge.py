@@ -6,7 +6,7 @@ Matrices are those of USD, for row vectors: the rows are the images of the axes 
 import math
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, Vt
+from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel, Vt
 
 Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
 LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
@@ -48,8 +48,31 @@ class Stage:
         self.meters = meters if 0 < meters < math.inf else 0.01
         self.z_up = UsdGeom.GetStageUpAxis(self.stage) == "Z"
         self.to_world = np.diag([self.meters] * 3 + [1.0]) @ (Z_UP_TO_Y_UP if self.z_up else np.eye(4))
+        self.bake()
         self.xforms = UsdGeom.XformCache(self.time)
         self.blender = self.stage.GetRootLayer().documentation.startswith("Blender v")
+
+    def bake(self):
+        """Points, normals and transforms as joints and blend shapes have them, in the session layer."""
+        self.stage.SetEditTarget(self.stage.GetSessionLayer())
+        everywhere = lambda kind: [
+            prim for prim in Usd.PrimRange.Stage(self.stage, Usd.TraverseInstanceProxies()) if prim.IsA(kind)
+        ]
+        # Instances can't be baked.
+        while roots := [prim for prim in everywhere(UsdSkel.Root) if prim.IsInstance() or prim.IsInstanceProxy()]:
+            instance = roots[0]
+            while not instance.IsInstance():
+                instance = instance.GetParent()
+            instance.SetInstanceable(False)
+        time = self.time.GetValue() if self.time != Usd.TimeCode.EarliestTime() else 0.0
+        # Only what has a sample at the time is baked there.
+        for animation in everywhere(UsdSkel.Animation):
+            for name in ("translations", "rotations", "scales", "blendShapeWeights"):
+                attribute = animation.GetAttribute(name)
+                if attribute.GetNumTimeSamples() > 1:
+                    attribute.Set(attribute.Get(time), time)
+        for root in everywhere(UsdSkel.Root):
+            UsdSkel.BakeSkinning(UsdSkel.Root(root), Gf.Interval(time, time))
 
     def world(self, prim):
         return np.array(self.xforms.GetLocalToWorldTransform(prim)) @ self.to_world
@@ -127,12 +150,29 @@ class Stage:
         kept = [(i, indices[ends[i] - n : ends[i]]) for i, n in enumerate(counts) if n >= 3 and i not in holes]
         return points, kept
 
-    def uv_corners(self, prim, faces):
-        """`st` of every corner of `faces`; `None` where there is none that fits."""
-        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("st")
+    def corners(self, prim, faces, name, width):
+        """The primvar `name`, of `width` numbers, of every corner of `faces`; `None` where there is none that fits."""
+        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
         values = primvar.ComputeFlattened(self.time) if primvar else None
-        values = np.array(values if values is not None else [], dtype=np.float32)
-        if values.ndim != 2 or values.shape[1] != 2:
+        return self.spread(prim, faces, primvar.GetInterpolation(), values, width) if values else None
+
+    def normal_corners(self, prim, faces):
+        """The normal of every corner, of unit length; `None` for surfaces that are smooth, or without any."""
+        mesh = UsdGeom.Mesh(prim)
+        if mesh.GetSubdivisionSchemeAttr().Get(self.time) != "none":
+            return None
+        normals = self.corners(prim, faces, "normals", 3)
+        values = mesh.GetNormalsAttr().Get(self.time)
+        # The primvar comes before the attribute.
+        if normals is None and values and not UsdGeom.PrimvarsAPI(prim).HasPrimvar("normals"):
+            normals = self.spread(prim, faces, mesh.GetNormalsInterpolation(), values, 3)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True) if normals is not None else np.zeros(1)
+        return normals / lengths if (lengths > 0).all() else None
+
+    def spread(self, prim, faces, interpolation, values, width):
+        values = np.array(values, dtype=np.float32)
+        values = values.reshape(len(values), -1)
+        if values.shape[1] != width:
             return None
         counts = UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(self.time)
         starts = np.concatenate([[0], np.cumsum(counts)])
@@ -142,7 +182,7 @@ class Stage:
             "vertex": lambda face, corners: corners,
             "varying": lambda face, corners: corners,
             "faceVarying": lambda face, corners: np.arange(starts[face], starts[face + 1]),
-        }[primvar.GetInterpolation()]
+        }[interpolation]
         picked = np.concatenate([pick(face, corners) for face, corners in faces] or [np.zeros(0, int)])
         return values[picked] if len(picked) == 0 or picked.max() < len(values) else None
 

@@ -13,6 +13,7 @@ mod mutation;
 #[path = "../support/rng.rs"]
 mod rng;
 mod shown;
+mod skel;
 mod times;
 
 use std::path::{Path, PathBuf};

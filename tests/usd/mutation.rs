@@ -1,6 +1,6 @@
-//! Damage to a rich stage, whose text mostly still parses and so reaches deep into the door: numbers turn
-//! huge, negative and not finite, arrays shrink and grow, lines go and come twice, tokens and paths trade
-//! places. The crate file and the package have bytes flipped, cut out and put in twice.
+//! Damage to a rich stage and to one of skeletons, whose text mostly still parses and so reaches deep into the
+//! door: numbers turn huge, negative and not finite, arrays shrink and grow, lines go and come twice, tokens and
+//! paths trade places. The crate file and the package have bytes flipped, cut out and put in twice.
 //!
 //! `PENUMBRA_MUTATIONS=1000000` runs it for longer, `PENUMBRA_SEED` from another start.
 
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use penumbra::import::ImportOptions;
 
 use super::rng::Rng;
-use super::{at_frame, corpus::corpus, try_load};
+use super::{at_frame, corpus::corpus, stage, try_load};
 
 /// What stands in a text where.
 #[derive(Default)]
@@ -224,7 +224,8 @@ fn keep(path: &Path, case: u64) -> String {
 #[test]
 fn no_damage_panics() {
     let read = |name: &str| std::fs::read(corpus().join(name)).unwrap();
-    let text = String::from_utf8(read("rich.usda")).unwrap();
+    let texts = [read("rich.usda"), std::fs::read(stage("skel.usda")).unwrap()];
+    let texts = texts.map(|text| String::from_utf8(text).unwrap());
     let (binary, package) = (read("rich.usdc"), read("rich.usdz"));
     let dir = tempfile::tempdir().unwrap();
     for file in ["t.png", "lamp.ies"] {
@@ -243,7 +244,7 @@ fn no_damage_panics() {
                 (["usdc", "usdz"][kind], bytes)
             }
             _ => {
-                let mut text = text.clone();
+                let mut text = texts[rng.below(2)].clone();
                 (0..1 + rng.below(4)).for_each(|_| mutate_text(&mut text, &mut rng));
                 ("usda", text.into_bytes())
             }

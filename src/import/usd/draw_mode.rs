@@ -98,6 +98,7 @@ pub(super) fn replace(
             visible: true,
             linked: false,
             stand_in: Some(StandIn { shape, color, textures }),
+            skin: None,
         })
     });
     let (leaf, path, asset) = (leaf.clone(), prim.path().clone(), context.asset.clone());
@@ -189,7 +190,7 @@ fn extent(reading: &Reading<'_>, leaf: &Leaf) -> Option<Range> {
         of_points(&points.iter().map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>())
     };
     authored("extent").or_else(|| authored("points")).or_else(|| {
-        let source = shape::read(reading, &leaf.prim, &[])?;
+        let source = shape::read(reading, &leaf.prim, &[], leaf.skin.as_deref())?;
         let place = reading.place_of(leaf.prim.path());
         match shape::build(source, &shape::Wants::default(), 0, &place, &mut Warnings::new())? {
             Built::Mesh(mesh) => of_points(&mesh.points),

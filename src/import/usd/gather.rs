@@ -12,6 +12,7 @@ use super::inherit::{Clock, Pose};
 use super::light::ShapeLight;
 use super::shape::tint::Tint;
 use super::shape::{self, Source};
+use super::skel;
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
 
@@ -51,6 +52,8 @@ pub(super) struct Read {
     pub prim: Path,
     /// The primvars that it inherits.
     pub primvars: Vec<Path>,
+    /// The skeleton that it follows.
+    pub skin: Option<Arc<skel::Bound>>,
     /// Taken by the first who builds it.
     pub source: Option<Source>,
 }
@@ -90,8 +93,12 @@ pub(super) struct Gatherer<'r, 'a> {
     /// True for the types that are no shapes.
     aside: fn(&str) -> bool,
     known: HashMap<(*const Leaf, *const Scope), Known>,
-    shapes: HashMap<(Path, Vec<Path>, bool), Option<Rc<Subsets>>>,
+    shapes: HashMap<ShapeKey, Option<Rc<Subsets>>>,
 }
+
+/// What makes it a shape of its own: its prim, the primvars that it inherits, whether something stands in for it,
+/// and the skeleton that it follows.
+type ShapeKey = (Path, Vec<Path>, bool, Option<Arc<skel::Bound>>);
 
 /// A look, and what keeps the addresses that it is known by.
 struct Known {
@@ -144,15 +151,15 @@ impl<'r, 'a> Gatherer<'r, 'a> {
             None
         } else {
             let primvars: Vec<Path> = leaf.primvars.iter().map(|p| p.attribute().path().clone()).collect();
-            let key = (leaf.prim.path().clone(), primvars, leaf.stand_in.is_some());
+            let key = (leaf.prim.path().clone(), primvars, leaf.stand_in.is_some(), leaf.skin.clone());
             let known = self.shapes.entry(key.clone());
             let read = known.or_insert_with(|| {
                 let source = match &leaf.stand_in {
                     Some(stand_in) => Source::StandIn(Box::new(stand_in.clone())),
-                    None => shape::read(reading, &leaf.prim, &leaf.primvars)?,
+                    None => shape::read(reading, &leaf.prim, &leaf.primvars, leaf.skin.as_deref())?,
                 };
                 let each = source.subsets().iter().map(|path| (path.clone(), subset(reading, leaf, path))).collect();
-                batch.push(Read { prim: key.0, primvars: key.1, source: Some(source) });
+                batch.push(Read { prim: key.0, primvars: key.1, skin: key.3, source: Some(source) });
                 Some(Rc::new(Subsets { shape: (number, batch.len() - 1), each }))
             });
             let read = read.as_ref()?;

@@ -11,6 +11,7 @@ use openusd_schemas::geom::Primvar;
 use super::bindings::Bindings;
 use super::draw_mode::DrawMode;
 use super::kinds::Kind;
+use super::skel;
 use super::stage::Reading;
 use super::xform::Xform;
 use crate::desc::Motion;
@@ -72,6 +73,8 @@ pub(super) struct Context {
     pub group: bool,
     /// How models are drawn instead of themselves.
     pub draw_mode: Option<DrawMode>,
+    /// Which skeleton is followed; `None` where none is named.
+    pub skel: Option<Rc<skel::Inherited>>,
 }
 
 impl Context {
@@ -87,6 +90,7 @@ impl Context {
             asset: None,
             group: true,
             draw_mode: None,
+            skel: None,
         }
     }
 
@@ -118,7 +122,7 @@ impl Context {
                 inner.asset = prim.path().name().map(Into::into);
             }
         }
-        let mut binds = false;
+        let (mut binds, mut follows) = (false, &*kind.name == "SkelRoot");
         for name in names {
             match name.as_str() {
                 "xformOpOrder" if kind.xformable => inner.pose = self.pose_of(clock, prim, names),
@@ -135,8 +139,14 @@ impl Context {
                         _ => {}
                     }
                 }
-                other => binds |= other.starts_with("material:binding"),
+                other => {
+                    binds |= other.starts_with("material:binding");
+                    follows |= skel::is_of_binding(other);
+                }
             }
+        }
+        if follows {
+            inner.skel = skel::Inherited::of(reading, prim, kind, names, self.skel.as_ref());
         }
         if binds {
             inner.bindings = Bindings::of(reading, prim, names, self.bindings.clone());
@@ -195,8 +205,8 @@ pub(super) struct Clock<'r, 'a> {
 /// Something that might move.
 pub(super) enum Mover {
     Transform(Xform),
-    /// What places the instances of a point instancer; true where they have velocities.
-    Instances(Vec<Attribute>, bool),
+    /// What these attributes move, as the instances of a point instancer; true where there are velocities.
+    Attributes(Vec<Attribute>, bool),
 }
 
 impl Mover {
@@ -204,7 +214,7 @@ impl Mover {
     fn samples(&self, open: f64, close: f64) -> Option<Vec<f64>> {
         match self {
             Self::Transform(xform) if xform.varies() => Some(xform.samples(open, close)),
-            Self::Instances(attributes, velocities)
+            Self::Attributes(attributes, velocities)
                 if *velocities || attributes.iter().any(|a| a.value_might_be_time_varying().unwrap_or(false)) =>
             {
                 Some(Attribute::unioned_time_samples_in_interval(attributes, open..=close).unwrap_or_default())

@@ -134,7 +134,7 @@ fn motion(walk: &mut Walk<'_, '_>, prim: &Prim, count: usize) -> Option<Vec<Vec<
     let attributes = || PLACES.map(|name| prim.attribute(name)).to_vec();
     let has = |name| reading.value::<Vec<Vec3f>>(prim, name).is_some_and(|values| !values.is_empty());
     let flows = || has("velocities") || has("angularVelocities");
-    walk.clock.note(|| Mover::Instances(attributes(), flows()));
+    walk.clock.note(|| Mover::Attributes(attributes(), flows()));
     let varies = || attributes().iter().any(|a| a.value_might_be_time_varying().unwrap_or(false));
     if walk.clock.times.is_empty() || !(varies() || flows()) {
         return None;
@@ -228,7 +228,7 @@ fn turns(reading: &Reading<'_>, prim: &Prim, name: &str, time: TimeCode) -> Opti
 
 /// The matrix of a quaternion as it is: like OpenUSD, without making it a unit one first, which those of
 /// half precision never quite are.
-fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
+pub(super) fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
     DMat3::from_cols(
         DVec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (z * x - y * w)),
         DVec3::new(2.0 * (x * y - z * w), 1.0 - 2.0 * (z * z + x * x), 2.0 * (y * z + x * w)),

@@ -35,6 +35,7 @@ mod scene;
 mod schemas;
 mod shape;
 mod shapes;
+mod skel;
 mod stage;
 mod stamp;
 mod udim;

@@ -37,9 +37,10 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
     let Some(root) = prim.prototype().ok().flatten() else { return };
     // A colour from outside does not make it another prototype.
     let color = tint::inherited(reading, &context.primvars);
-    let context = Context { primvars: tint::without(&context.primvars), ..context };
     let known = walk.prototypes.native.get(&root);
     let first = known.map_or(prim, |known| &known.first).clone();
+    let skel = context.skel.map(|skel| Rc::new(skel.within(first.path(), prim.path())));
+    let context = Context { primvars: tint::without(&context.primvars), skel, ..context };
     let like = known.and_then(|known| known.shown.iter().find(|(other, _)| alike(reading, other, &context)));
     let prototype = match like {
         Some((_, shown)) => shown.clone(),
@@ -47,7 +48,10 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
             let mut inside = Vec::new();
             let pose = Pose::still(DAffine3::IDENTITY);
             let within = Context { pose, bindings: None, asset: None, ..context.clone() };
+            let animation = context.skel.as_ref().and_then(|skel| skel.animation().cloned());
+            walk.walked.push((first.path().clone(), animation));
             walk.below(&first, within, false, &mut inside);
+            walk.walked.pop();
             let inside = Rc::new(inside);
             let prototype = Prototype { first: first.clone(), shown: Vec::new() };
             let known = walk.prototypes.native.entry(root).or_insert(prototype);
@@ -83,7 +87,7 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
 
 /// True where a prototype looks the same in both surroundings.
 fn alike(reading: &Reading<'_>, a: &Context, b: &Context) -> bool {
-    if !a.shows_like(b) || a.primvars.len() != b.primvars.len() {
+    if !a.shows_like(b) || a.skel != b.skel || a.primvars.len() != b.primvars.len() {
         return false;
     }
     Rc::ptr_eq(&a.primvars, &b.primvars) || a.primvars.iter().zip(&*b.primvars).all(|(a, b)| equal(reading, a, b))

@@ -40,6 +40,10 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
         let what = "something moves while the shutter is open; motion blur is not rendered yet, all stands still";
         reading.warnings.borrow_mut().push(&reading.place, what);
     }
+    if scene.instances.is_empty() && scene.lights.is_empty() {
+        let what = "shows nothing: it has neither lights nor geometry that is visible";
+        reading.warnings.borrow_mut().push(&reading.place, what);
+    }
     units::warn_of_layers(reading);
     reading.warn_of_composition();
     Ok(scene)

@@ -97,7 +97,7 @@ fn again(reading: &Reading<'_>, read: &Read) -> Option<Source> {
     let prim = reading.stage.prim(&read.prim).ok()?;
     let primvar = |path| Primvar::from_attribute(reading.stage.attribute(path).ok()?);
     let primvars: Vec<Primvar> = read.primvars.iter().filter_map(primvar).collect();
-    shape::read(reading, &prim, &primvars)
+    shape::read(reading, &prim, &primvars, read.skin.as_deref())
 }
 
 /// The material of the shape and of each of its subsets.

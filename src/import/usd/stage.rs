@@ -14,7 +14,7 @@ use super::super::ImportOptions;
 use super::authored::Authored;
 use super::files::Files;
 use super::units::Units;
-use super::{cycles, diagnostics, render, variants};
+use super::{cycles, diagnostics, render, skel, variants};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::Purpose;
 use crate::math::DAffine3;
@@ -47,6 +47,8 @@ pub(super) struct Reading<'a> {
     pub warnings: RefCell<Warnings>,
     /// Whether there is a material of a MaterialX document at a path without prim.
     pub documents: RefCell<HashMap<sdf::Path, bool>>,
+    /// The skeletons that were met.
+    pub skeletons: skel::Skeletons,
     authored: RefCell<Authored>,
     /// Threads that hold what they opened until this is gone: to let go of it would cost time that is needed.
     pub crew: RefCell<Vec<mpsc::Sender<()>>>,
@@ -86,6 +88,7 @@ impl<'a> Reading<'a> {
             layers: Cell::new(0),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
+            skeletons: skel::Skeletons::default(),
             authored: RefCell::default(),
             crew: RefCell::default(),
         };

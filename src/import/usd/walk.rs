@@ -17,7 +17,7 @@ use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{draw_mode, instancer, prototypes, schemas, stamp};
+use super::{draw_mode, instancer, prototypes, schemas, skel, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -53,6 +53,8 @@ pub(super) struct Leaf {
     pub linked: bool,
     /// What is drawn in its place.
     pub stand_in: Option<StandIn>,
+    /// The skeleton that it follows.
+    pub skin: Option<Arc<skel::Bound>>,
 }
 
 /// One of them.
@@ -80,6 +82,8 @@ pub(super) struct Walk<'r, 'a> {
     pub later: Option<Vec<(usize, Path)>>,
     /// What stands in for models, by how it looks.
     pub stand_ins: HashMap<String, Rc<Leaf>>,
+    /// The first instances of the prototypes that are walked now, and where skeletons below get their poses from.
+    pub walked: Vec<(Path, Option<Path>)>,
     /// True while bounds are computed, for which nothing stands in for anything.
     pub measuring: bool,
     kinds: Kinds,
@@ -89,13 +93,14 @@ pub(super) struct Walk<'r, 'a> {
 
 impl<'r, 'a> Walk<'r, 'a> {
     pub fn new(clock: Clock<'r, 'a>) -> Self {
-        let (prototypes, kinds, contexts, stand_ins) = Default::default();
+        let (prototypes, kinds, contexts, stand_ins, walked) = Default::default();
         Self {
             reading: clock.reading,
             clock,
             prototypes,
             later: None,
             stand_ins,
+            walked,
             measuring: false,
             kinds,
             contexts,
@@ -238,6 +243,11 @@ impl<'r, 'a> Walk<'r, 'a> {
         if hidden && &*kind.name != "Camera" {
             return;
         }
+        let skin = inner.skel.as_ref().and_then(|skel| skel.bound(self.reading, prim, names, &self.walked));
+        let pose = match &skin {
+            Some(bound) if bound.rigid => skel::place(&mut self.clock, prim, bound, &inner.pose),
+            _ => inner.pose.clone(),
+        };
         let is_link = |n: &Token| n.starts_with("collection:lightLink:") || n.starts_with("collection:shadowLink:");
         let leaf = Leaf {
             prim: prim.clone(),
@@ -248,10 +258,10 @@ impl<'r, 'a> Walk<'r, 'a> {
             visible: !hidden,
             linked: names.iter().any(is_link),
             stand_in: None,
+            skin,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
-        let (leaf, pose) = (Rc::new(leaf), inner.pose.clone());
-        self.show(Shown { leaf, path, pose, asset, scope: None, color: None }, shown);
+        self.show(Shown { leaf: Rc::new(leaf), path, pose, asset, scope: None, color: None }, shown);
     }
 
     /// Adds one.

@@ -95,7 +95,7 @@ fn held(attribute: &Attribute, time: TimeCode) -> TimeCode {
 }
 
 /// A matrix for row vectors, row by row, as ours. What it does beyond an affine map is left out.
-fn affine(m: &[f64; 16]) -> DAffine3 {
+pub(super) fn affine(m: &[f64; 16]) -> DAffine3 {
     let row = |i: usize| DVec3::new(m[i], m[i + 1], m[i + 2]);
     DAffine3 { matrix3: DMat3::from_cols(row(0), row(4), row(8)), translation: row(12) }
 }

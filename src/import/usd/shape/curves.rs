@@ -4,6 +4,7 @@ use openusd::tf::Token;
 use openusd::usd::Prim;
 use openusd_schemas::geom::{Interpolation, Primvar};
 
+use super::super::skel::{Bound, Deformer};
 use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::{Triangles, mend_points};
@@ -31,14 +32,25 @@ pub(in super::super) struct Curves {
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
-/// Reads curves of schema `kind`; `None`, with a warning, where there are none.
-pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Curves> {
+/// Reads curves of schema `kind` that follow the skeleton of `skin`; `None`, with a warning, where there are none.
+pub(super) fn read(
+    reading: &Reading<'_>,
+    prim: &Prim,
+    inherited: &[Primvar],
+    skin: Option<&Bound>,
+    kind: &str,
+) -> Option<Curves> {
     let mut points = mesh::points(reading, prim)?;
+    let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let mut counts: Vec<i32> = reading.value(prim, "curveVertexCounts").unwrap_or_default();
     let token = |name: &str| reading.value::<Token>(prim, name);
     let (mut basis, mut wrap) = (Basis::Linear, Wrap::Open);
     let shutter = reading.shutter.get();
-    let mut motion = shutter.map_or_else(Vec::new, |shutter| motion::read(reading, prim, shutter, points.len()));
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let mut motion = shutter.map_or_else(Vec::new, moved);
+    if let Some(deformer) = &deformer {
+        points = deformer.points(points, reading.time);
+    }
     let mut from_hermite = false;
     match kind {
         "BasisCurves" => {
@@ -82,6 +94,9 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
     let mut widths = points::widths(reading, prim, &mut primvars);
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
+    }
+    if let (Some(deformer), Some(normals)) = (&deformer, &mut primvars.normals) {
+        deformer.normals(normals, &[]);
     }
     if from_hermite {
         // The points are the ends of the pieces.

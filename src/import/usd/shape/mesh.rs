@@ -5,6 +5,7 @@ use openusd::tf::Token;
 use openusd::usd::Prim;
 use openusd_schemas::geom::{Interpolation, Primvar};
 
+use super::super::skel::{Bound, Deformer};
 use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::{Authored, mend_points};
@@ -30,15 +31,17 @@ pub(in super::super) struct Mesh {
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
-/// Reads a mesh; its motion within the frames `shutter`, where that is given. `None`, with a warning, for
-/// one without points or faces.
+/// Reads a mesh that follows the skeleton of `skin`; its motion within the frames `shutter`, where that is given.
+/// `None`, with a warning, for one without points or faces.
 pub(super) fn read(
     reading: &Reading<'_>,
     prim: &Prim,
     inherited: &[Primvar],
+    skin: Option<&Bound>,
     shutter: Option<[f64; 2]>,
 ) -> Option<Mesh> {
     let points = points(reading, prim)?;
+    let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let indices: Vec<i32> = reading.value(prim, "faceVertexIndices").unwrap_or_default();
     let counts: Vec<i32> = reading.value(prim, "faceVertexCounts").unwrap_or_default();
     if counts.is_empty() || indices.is_empty() {
@@ -54,6 +57,11 @@ pub(super) fn read(
         let normals = prim.attribute("normals");
         primvars.normals = primvar::array(reading, &normals, triples, Interpolation::Vertex);
     }
+    if let Some(deformer) = &deformer {
+        primvars.normals = deformer.of_surface(primvars.normals, &indices);
+    }
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let motion = shutter.map_or_else(Vec::new, moved);
     Some(Mesh {
         counts,
         indices,
@@ -62,14 +70,22 @@ pub(super) fn read(
         rules,
         primvars,
         subsets: subsets::read(reading, prim),
-        motion: shutter.map_or_else(Vec::new, |shutter| motion::read(reading, prim, shutter, points.len())),
-        points,
+        motion,
+        points: match &deformer {
+            Some(deformer) => deformer.points(points, reading.time),
+            None => points,
+        },
     })
 }
 
 /// Reads the authored surface of tetrahedra.
-pub(super) fn read_tetrahedra(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) -> Option<Mesh> {
-    let points = points(reading, prim)?;
+pub(super) fn read_tetrahedra(
+    reading: &Reading<'_>,
+    prim: &Prim,
+    inherited: &[Primvar],
+    skin: Option<&Bound>,
+) -> Option<Mesh> {
+    let mut points = points(reading, prim)?;
     let indices: Vec<i32> = match reading.value::<Value>(prim, "surfaceFaceVertexIndices") {
         Some(Value::Vec3iVec(faces)) => faces.iter().flat_map(|f| [f.x, f.y, f.z]).collect(),
         _ => Vec::new(),
@@ -81,6 +97,10 @@ pub(super) fn read_tetrahedra(reading: &Reading<'_>, prim: &Prim, inherited: &[P
     let mut primvars = primvar::read(reading, prim, inherited);
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
+    }
+    if let Some(deformer) = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len())) {
+        primvars.normals = deformer.of_surface(primvars.normals, &indices);
+        points = deformer.points(points, reading.time);
     }
     Some(Mesh {
         points,

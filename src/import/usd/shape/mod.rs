@@ -14,7 +14,7 @@ mod motion;
 mod points;
 mod polygons;
 mod primitive;
-mod primvar;
+pub(super) mod primvar;
 mod profile;
 mod ribbon;
 mod rounds;
@@ -24,7 +24,7 @@ mod subdivide;
 mod subsets;
 pub(super) mod tint;
 mod triangulate;
-mod values;
+pub(super) mod values;
 
 pub(super) use primitive::Likeness;
 pub(super) use stand_in::{CARDS_UV, Quad, StandIn, StandInShape};
@@ -35,6 +35,7 @@ use openusd::sdf;
 use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
+use super::skel;
 use super::stage::Reading;
 use crate::desc::{MeshDesc, RoundsDesc};
 use crate::error::{Place, Warnings};
@@ -89,17 +90,24 @@ impl Source {
     }
 }
 
-/// Reads the gprim `prim`, which inherits `primvars`. `None` for a kind that is no shape, or one that is
+/// Reads the gprim `prim`, which inherits `primvars` and follows the skeleton of `skin`. `None` for a kind that is no shape, or one that is
 /// broken, which is told.
-pub(super) fn read(reading: &Reading<'_>, prim: &Prim, primvars: &[Primvar]) -> Option<Source> {
+pub(super) fn read(
+    reading: &Reading<'_>,
+    prim: &Prim,
+    primvars: &[Primvar],
+    skin: Option<&skel::Bound>,
+) -> Option<Source> {
     let kind = reading.type_name(prim);
     match kind.as_str() {
-        "Mesh" => mesh::read(reading, prim, primvars, reading.shutter.get()).map(|mesh| Source::Mesh(Box::new(mesh))),
-        "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars).map(|mesh| Source::Mesh(Box::new(mesh))),
-        "BasisCurves" | "HermiteCurves" | "NurbsCurves" => {
-            curves::read(reading, prim, primvars, kind.as_str()).map(|curves| Source::Curves(Box::new(curves)))
+        "Mesh" => {
+            mesh::read(reading, prim, primvars, skin, reading.shutter.get()).map(|mesh| Source::Mesh(Box::new(mesh)))
         }
-        "Points" => points::read(reading, prim, primvars).map(|points| Source::Points(Box::new(points))),
+        "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars, skin).map(|mesh| Source::Mesh(Box::new(mesh))),
+        "BasisCurves" | "HermiteCurves" | "NurbsCurves" => {
+            curves::read(reading, prim, primvars, skin, kind.as_str()).map(|curves| Source::Curves(Box::new(curves)))
+        }
+        "Points" => points::read(reading, prim, primvars, skin).map(|points| Source::Points(Box::new(points))),
         "NurbsPatch" => {
             reading.warn(prim.path(), "NURBS patches are not supported; the patch is left out");
             None

@@ -3,6 +3,7 @@
 use openusd::sdf::Value;
 use openusd::usd::{Prim, TimeCode};
 
+use super::super::skel::Deformer;
 use super::super::stage::Reading;
 use super::values::triples;
 use crate::desc::Motion;
@@ -10,15 +11,27 @@ use crate::desc::Motion;
 /// The points of `prim`, of which there are `count`, at the ends of `shutter` and at the samples between
 /// them; the interval is in frames after the one that is read. Velocities come before samples, as in
 /// UsdGeomPointBased::ComputePointsAtTime. Empty for points that stand still, and where their number
-/// changes.
-pub(super) fn read(reading: &Reading<'_>, prim: &Prim, shutter: [f64; 2], count: usize) -> Vec<Motion<Vec<[f32; 3]>>> {
+/// changes. What `deformer` deforms has no velocities: those are of the points as modelled.
+pub(super) fn read(
+    reading: &Reading<'_>,
+    prim: &Prim,
+    shutter: [f64; 2],
+    count: usize,
+    deformer: Option<&Deformer<'_>>,
+) -> Vec<Motion<Vec<[f32; 3]>>> {
     let attribute = prim.attribute("points");
     let now = reading.time.value();
     let read = |time: f64| {
-        let value = attribute.get_at::<Value>(TimeCode::new(time)).ok().flatten();
-        value.and_then(triples).filter(|points| points.len() == count)
+        let time = TimeCode::new(time);
+        let value = attribute.get_at::<Value>(time).ok().flatten();
+        let points = value.and_then(triples).filter(|points| points.len() == count)?;
+        Some(match deformer {
+            Some(deformer) => deformer.points(points, time),
+            None => points,
+        })
     };
-    if let Some(velocities) = reading.value::<Value>(prim, "velocities").and_then(triples)
+    if deformer.is_none()
+        && let Some(velocities) = reading.value::<Value>(prim, "velocities").and_then(triples)
         && velocities.len() == count
         && let Some(points) = read(now)
     {
@@ -30,11 +43,13 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, shutter: [f64; 2], count:
         };
         return shutter.map(at).into();
     }
-    if !attribute.value_might_be_time_varying().unwrap_or(false) {
+    let [open, close] = shutter.map(|frame| now + frame);
+    let deforms = deformer.and_then(|deformer| deformer.samples(open, close));
+    if deforms.is_none() && !attribute.value_might_be_time_varying().unwrap_or(false) {
         return Vec::new();
     }
-    let [open, close] = shutter.map(|frame| now + frame);
     let mut times = attribute.time_samples_in_interval(open..=close).unwrap_or_default();
+    times.extend(deforms.into_iter().flatten());
     times.extend([open, close]);
     times.sort_by(f64::total_cmp);
     times.dedup();

@@ -4,6 +4,7 @@ use openusd::sdf::Value;
 use openusd::usd::Prim;
 use openusd_schemas::geom::{Interpolation, Primvar};
 
+use super::super::skel::{Bound, Deformer};
 use super::super::stage::Reading;
 use super::finish::Channels;
 use super::primvar::{self, Channel, Counts, Data, Primvars};
@@ -22,13 +23,19 @@ pub(in super::super) struct Points {
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
-/// Reads points; `None`, with a warning, where there are none.
-pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) -> Option<Points> {
+/// Reads points that follow the skeleton of `skin`; `None`, with a warning, where there are none.
+pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], skin: Option<&Bound>) -> Option<Points> {
     let points = mesh::points(reading, prim)?;
+    let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let mut primvars = primvar::read(reading, prim, inherited);
     let widths = widths(reading, prim, &mut primvars);
     let shutter = reading.shutter.get();
-    let motion = shutter.map_or_else(Vec::new, |shutter| motion::read(reading, prim, shutter, points.len()));
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let motion = shutter.map_or_else(Vec::new, moved);
+    let points = match &deformer {
+        Some(deformer) => deformer.points(points, reading.time),
+        None => points,
+    };
     Some(Points { points, widths, primvars, motion })
 }
 

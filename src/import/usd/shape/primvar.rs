@@ -14,7 +14,7 @@ use crate::error::{Place, Warnings};
 
 /// Values as authored, not yet held against the shape.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Data<const N: usize> {
+pub(in super::super) struct Data<const N: usize> {
     pub name: Arc<str>,
     pub interpolation: Interpolation,
     pub values: Vec<[f32; N]>,
@@ -187,7 +187,7 @@ impl<const N: usize> Data<N> {
     }
 
     /// Holds the values against the counts of the shape; `None`, with a warning, where there are too few.
-    pub fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
+    pub(super) fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
         let Self { name, interpolation, mut values, indices, stride } = self;
         if stride > 1 {
             values = values.into_iter().step_by(stride).collect();

@@ -19,7 +19,7 @@ pub(super) fn source(usda: &str, path: &str) -> (Option<Source>, Warnings) {
     let prim = reading.stage.prim(sdf::path(path).unwrap()).unwrap();
     let parent = reading.stage.prim(prim.path().parent().unwrap()).unwrap();
     let inherited = PrimvarsAPI::from_prim_unchecked(parent).find_inheritable_primvars().unwrap();
-    let source = read(&reading, &prim, &inherited);
+    let source = read(&reading, &prim, &inherited, None);
     (source, reading.warnings.take())
 }
 

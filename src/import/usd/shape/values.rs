@@ -4,7 +4,7 @@ use bytemuck::allocation::cast_vec;
 use openusd::sdf::Value;
 
 /// Vectors of two; one for a value that is no array.
-pub(super) fn pairs(value: Value) -> Option<Vec<[f32; 2]>> {
+pub(in super::super) fn pairs(value: Value) -> Option<Vec<[f32; 2]>> {
     Some(match value {
         Value::Vec2fVec(v) => cast_vec(v),
         Value::Vec2dVec(v) => v.iter().map(|v| [v.x as f32, v.y as f32]).collect(),
@@ -17,7 +17,7 @@ pub(super) fn pairs(value: Value) -> Option<Vec<[f32; 2]>> {
 }
 
 /// Vectors of three.
-pub(super) fn triples(value: Value) -> Option<Vec<[f32; 3]>> {
+pub(in super::super) fn triples(value: Value) -> Option<Vec<[f32; 3]>> {
     Some(match value {
         Value::Vec3fVec(v) => cast_vec(v),
         Value::Vec3dVec(v) => v.iter().map(|v| [v.x as f32, v.y as f32, v.z as f32]).collect(),
@@ -30,7 +30,7 @@ pub(super) fn triples(value: Value) -> Option<Vec<[f32; 3]>> {
 }
 
 /// Numbers.
-pub(super) fn scalars(value: Value) -> Option<Vec<[f32; 1]>> {
+pub(in super::super) fn scalars(value: Value) -> Option<Vec<[f32; 1]>> {
     Some(match value {
         Value::FloatVec(v) => cast_vec(v),
         Value::DoubleVec(v) => v.iter().map(|&v| [v as f32]).collect(),
