@@ -8,6 +8,7 @@ use openusd::sdf;
 use openusd::usd::{Prim, TimeCode};
 
 use super::inherit::{Context, Mover, Pose};
+use super::layer;
 use super::shape::tint::{self, Tint};
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
@@ -240,11 +241,7 @@ fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
 fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
     let mut off: HashSet<i64> =
         reading.value::<Vec<i64>>(prim, "invisibleIds").unwrap_or_default().into_iter().collect();
-    match prim.get_metadata::<sdf::Value>("inactiveIds") {
-        Ok(Some(sdf::Value::Int64ListOp(inactive))) => off.extend(inactive.flatten()),
-        Ok(Some(sdf::Value::Int64Vec(inactive))) => off.extend(inactive),
-        _ => {}
-    }
+    off.extend(layer::inactive_ids(&reading.stage, prim));
     if off.is_empty() {
         return None;
     }

@@ -13,6 +13,7 @@ use openusd::usd::{Attribute, Prim, Stage, TimeCode};
 use super::super::ImportOptions;
 use super::authored::Authored;
 use super::files::Files;
+use super::layer::{Kept, Met, Site};
 use super::units::Units;
 use super::{cycles, diagnostics, render, variants};
 use crate::error::{Error, Place, Result, Warnings};
@@ -50,6 +51,9 @@ pub(super) struct Reading<'a> {
     authored: RefCell<Authored>,
     /// Threads that hold what they opened until this is gone: to let go of it would cost time that is needed.
     pub crew: RefCell<Vec<mpsc::Sender<()>>>,
+    /// What was met in layers on their way.
+    met: Rc<RefCell<Met>>,
+    kept: Kept,
 }
 
 impl<'a> Reading<'a> {
@@ -63,6 +67,7 @@ impl<'a> Reading<'a> {
             return Err(Error::io(path, "can't read", source));
         }
         let (files, schemas) = Files::open(path);
+        let met = files.met();
         let opened = Stage::builder().resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
         let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
         let mut warnings = Warnings::new();
@@ -88,6 +93,8 @@ impl<'a> Reading<'a> {
             documents: RefCell::default(),
             authored: RefCell::default(),
             crew: RefCell::default(),
+            met,
+            kept: Kept::default(),
         };
         cycles::mend(&reading);
         variants::select(&reading.stage, &options.variants, &reading.place)?;
@@ -112,6 +119,9 @@ impl<'a> Reading<'a> {
         diagnostics::tell(self);
         for (path, what) in self.authored.borrow_mut().unknown.drain(..) {
             self.warn(&path, what);
+        }
+        for (layer, path, what) in self.met.borrow_mut().told.drain(..) {
+            self.warnings.borrow_mut().push(&Place::file(layer).at(path), what);
         }
     }
 
@@ -155,6 +165,10 @@ impl<'a> Reading<'a> {
         T: FromValue,
         T::Error: Into<openusd::Error>,
     {
+        if let Some(spline) = self.spline(attribute) {
+            let value = spline.at(time).filter(|value| T::accepts_kind(ValueKind::from(value)))?;
+            return T::try_from(value).ok();
+        }
         match attribute.get_at::<T>(time) {
             Ok(Some(value)) => Some(value),
             Ok(None) => self.held(attribute, time),
@@ -163,6 +177,12 @@ impl<'a> Reading<'a> {
                 None
             }
         }
+    }
+
+    /// The curve that gives `attribute` its values.
+    pub fn spline(&self, attribute: &Attribute) -> Option<Rc<Site>> {
+        // Few stages have any, and others are not to be searched.
+        if self.met.borrow().splines { self.kept.spline(&self.stage, attribute) } else { None }
     }
 
     /// The sample before `time` where a block follows it: OpenUSD holds that value up to the block, the
@@ -174,9 +194,6 @@ impl<'a> Reading<'a> {
     {
         if let Ok(Some((before, after))) = attribute.bracketing_time_samples(time) {
             return if before < after { attribute.get_at::<T>(TimeCode::new(before)).ok().flatten() } else { None };
-        }
-        if matches!(attribute.has_authored_metadata("spline"), Ok(true)) {
-            self.warn(attribute.path(), "is animated by a spline, which can't be evaluated; taken for not authored");
         }
         None
     }

@@ -1,0 +1,160 @@
+//! Binary layers ("crate" files) of versions that the openusd crate does not read, or in which it does not know
+//! a value's type. Their tables are written anew behind the rest of the file; no other byte moves.
+//!
+//! Versions 0.12 to 0.14 differ from 0.11 in what they may hold: curves, how tangents were found, edits of
+//! arrays. `Usd_CrateFile` is the description of the format.
+
+use openusd::usdc::{CrateFile, MAGIC};
+
+use super::Mended;
+use super::kept::EDIT;
+
+/// Bytes in which the version is told.
+pub(super) const HEAD: usize = 16;
+
+/// Where the minor version stands.
+const MINOR: usize = MAGIC.len() + 1;
+/// The first version that may hold something to mend, the last that the crate reads and that is known here.
+const FIRST: u8 = 12;
+const READ: u8 = 12;
+const LAST: u8 = 14;
+
+/// Values: six bytes of data or of a place in the file, a type, flags.
+const TYPE: u64 = 0xff << 48;
+const ARRAY: u64 = 1 << 63;
+const INLINED: u64 = 1 << 62;
+const IS_EDIT: u64 = 1 << 60;
+const DATA: u64 = (1 << 48) - 1;
+const UCHAR: u64 = 2 << 48;
+const BLOCK: u64 = 51 << 48;
+const SPLINE: u64 = 59 << 48;
+const ANIMATION_BLOCK: u64 = 60 << 48;
+
+/// True for a binary layer of which something may have to be mended.
+pub(super) fn is_newer(head: &[u8]) -> bool {
+    head.starts_with(MAGIC) && head.get(MINOR - 1) == Some(&0) && head.get(MINOR).is_some_and(is_known)
+}
+
+fn is_known(version: &u8) -> bool {
+    (FIRST..=LAST).contains(version)
+}
+
+/// The file in the crate's words; `None` where it is in them, or broken.
+pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
+    let mut bytes = bytes.to_vec();
+    let version = bytes.get_mut(MINOR)?;
+    let is_read = *version <= READ;
+    *version = (*version).min(READ);
+    let mut file = CrateFile::open(bytes.clone()).ok()?;
+    let mut mended = Mended { bytes: Vec::new(), splines: false, told: Vec::new() };
+    let mut changed = false;
+    let mut edits = Vec::new();
+    for i in 0..file.fields.len() {
+        let value = file.fields[i].value_rep.0;
+        let (name, value) = match value & TYPE {
+            _ if value & IS_EDIT != 0 => {
+                edits.push(i);
+                (Some(EDIT), BLOCK | INLINED)
+            }
+            // Their bytes, counted as those of an array are.
+            SPLINE => {
+                mended.splines = true;
+                (None, UCHAR | ARRAY | (value & DATA))
+            }
+            // Hides the samples of weaker layers: known to the crate as samples that are blocked.
+            ANIMATION_BLOCK => (Some("timeSamples"), BLOCK | INLINED),
+            _ => continue,
+        };
+        changed = true;
+        file.fields[i].value_rep.0 = value;
+        if let Some(name) = name {
+            file.fields[i].token_index = token(&mut file.tokens, name);
+        }
+    }
+    if !changed {
+        return (!is_read).then_some(Mended { bytes, ..mended });
+    }
+    mended.told = told(&file, &edits);
+    append(&mut bytes, "TOKENS", &tokens(&file)?)?;
+    append(&mut bytes, "FIELDS", &fields(&file)?)?;
+    Some(Mended { bytes, ..mended })
+}
+
+/// Index of the token `name`, which is added where it is not there.
+fn token(tokens: &mut Vec<String>, name: &str) -> usize {
+    tokens.iter().position(|token| token == name).unwrap_or_else(|| {
+        tokens.push(name.into());
+        tokens.len() - 1
+    })
+}
+
+/// The attributes that have one of the fields `edits`.
+fn told(file: &CrateFile, edits: &[usize]) -> Vec<(String, String)> {
+    let is_edited = |start: usize| {
+        let set = file.fieldsets.get(start..).unwrap_or_default();
+        set.iter().map_while(|field| *field).any(|field| edits.contains(&field))
+    };
+    let edited = file.specs.iter().filter(|spec| !edits.is_empty() && is_edited(spec.fieldset_index));
+    let path = |index: usize| file.paths.get(index).map(ToString::to_string);
+    edited.filter_map(|spec| Some((path(spec.path_index)?, super::EDIT_IS_NOT_MADE.into()))).collect()
+}
+
+/// Puts `data` at the end of the file and makes it the section `name`.
+fn append(bytes: &mut Vec<u8>, name: &str, data: &[u8]) -> Option<()> {
+    let number = |bytes: &[u8], at: usize| -> Option<usize> {
+        usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok()
+    };
+    let contents = number(bytes, HEAD)?;
+    let count = number(bytes, contents)?;
+    let entry = (0..count).map(|i| contents + 8 + 32 * i).find(|&entry| {
+        bytes.get(entry..entry + 16).is_some_and(|text| text.split(|&b| b == 0).next() == Some(name.as_bytes()))
+    })?;
+    let start = bytes.len() as u64;
+    bytes.extend_from_slice(data);
+    bytes.get_mut(entry + 16..entry + 24)?.copy_from_slice(&start.to_le_bytes());
+    bytes.get_mut(entry + 24..entry + 32)?.copy_from_slice(&(data.len() as u64).to_le_bytes());
+    Some(())
+}
+
+fn tokens(file: &CrateFile) -> Option<Vec<u8>> {
+    let text: Vec<u8> = file.tokens.iter().flat_map(|token| token.bytes().chain([0])).collect();
+    let mut data = (file.tokens.len() as u64).to_le_bytes().to_vec();
+    data.extend((text.len() as u64).to_le_bytes());
+    data.extend(block(&text)?);
+    Some(data)
+}
+
+fn fields(file: &CrateFile) -> Option<Vec<u8>> {
+    let indices: Option<Vec<i32>> = file.fields.iter().map(|field| i32::try_from(field.token_index).ok()).collect();
+    let values: Vec<u8> = file.fields.iter().flat_map(|field| field.value_rep.0.to_le_bytes()).collect();
+    let mut data = (file.fields.len() as u64).to_le_bytes().to_vec();
+    data.extend(block(&integers(&indices?))?);
+    data.extend(block(&values)?);
+    Some(data)
+}
+
+/// Integers as `Usd_IntegerCompression` has them, each by its whole difference to the one before.
+fn integers(values: &[i32]) -> Vec<u8> {
+    let mut data = vec![0; 4];
+    data.extend(values.chunks(4).map(|four| 0xff_u8 >> (8 - 2 * four.len())));
+    let before = std::iter::once(&0).chain(values);
+    data.extend(values.iter().zip(before).flat_map(|(value, before)| value.wrapping_sub(*before).to_le_bytes()));
+    data
+}
+
+/// `data` as one block of LZ4 that says all of it word for word, with its length before it.
+fn block(data: &[u8]) -> Option<Vec<u8>> {
+    let mut packed = vec![0];
+    match data.len().checked_sub(15) {
+        None => packed.push(u8::try_from(data.len()).ok()? << 4),
+        Some(rest) => {
+            packed.push(0xf0);
+            packed.extend(std::iter::repeat_n(255, rest / 255));
+            packed.push((rest % 255) as u8);
+        }
+    }
+    packed.extend_from_slice(data);
+    let mut block = (packed.len() as u64).to_le_bytes().to_vec();
+    block.append(&mut packed);
+    Some(block)
+}
