@@ -8,7 +8,7 @@ use std::sync::mpsc;
 
 use openusd::sdf::{self, FromValue, ValueKind};
 use openusd::tf::Token;
-use openusd::usd::{Attribute, Prim, Stage, TimeCode};
+use openusd::usd::{Attribute, InterpolationType, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
@@ -17,7 +17,7 @@ use super::layer::{Kept, Met, Site};
 use super::units::Units;
 use super::{cycles, diagnostics, render, variants};
 use crate::error::{Error, Place, Result, Warnings};
-use crate::import::Purpose;
+use crate::import::{Interpolation, Purpose};
 use crate::math::DAffine3;
 
 /// A composed stage, the time at which it is read, and how its space lies in ours.
@@ -68,7 +68,12 @@ impl<'a> Reading<'a> {
         }
         let (files, schemas) = Files::open(path);
         let met = files.met();
-        let opened = Stage::builder().resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
+        let interpolation = match options.interpolation {
+            Interpolation::Held => InterpolationType::Held,
+            Interpolation::Linear => InterpolationType::Linear,
+        };
+        let builder = Stage::builder().interpolation_type(interpolation);
+        let opened = builder.resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
         let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);

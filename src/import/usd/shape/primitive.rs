@@ -10,7 +10,7 @@ use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::Triangles;
 use super::primvar::{self, Channel, Counts, Primvars};
-use super::profile::{Axis, Solid};
+use super::profile::{Axis, CUBE, PLANE, Solid};
 use super::{Built, Wants};
 use crate::error::{Place, Warnings};
 use openusd_schemas::geom::Interpolation;
@@ -135,13 +135,52 @@ impl Primitive {
             Shape::Capsule { bottom, top, height } => Solid::capsule(bottom, top, height).along(axis),
             Shape::Plane { width, length } => Solid::plane(width, length, axis),
         };
-        // What has one value for the whole shape; others count faces and points that only Hydra knows.
-        let counts = Counts { faces: 1, joints: 1, points: 1, corners: 1 };
-        let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
-        channels.make_constant();
+        let mut channels = match shape {
+            Shape::Cube { .. } => at_corners(&CUBE, 8, primvars, wants, place, warnings),
+            Shape::Plane { .. } => at_corners(&PLANE, 4, primvars, wants, place, warnings),
+            // What has one value for the whole shape; others count faces and points that only Hydra knows.
+            _ => {
+                let counts = Counts { faces: 1, joints: 1, points: 1, corners: 1 };
+                Channels::new(primvars, &counts, wants, place, warnings)
+            }
+        };
+        if !matches!(shape, Shape::Cube { .. } | Shape::Plane { .. }) {
+            channels.make_constant();
+        }
         let mesh = solid_surface(solid, channels).finish(wants, place, warnings)?;
         Some(Built::Mesh(mesh))
     }
+}
+
+/// The values of a shape of `faces` with `points`, one for each of its faces' corners, each of which is a point
+/// of the solid.
+fn at_corners(
+    faces: &[[u32; 4]],
+    points: usize,
+    primvars: Primvars,
+    wants: &Wants,
+    place: &Place,
+    warnings: &mut Warnings,
+) -> Channels {
+    let counts = Counts { faces: faces.len(), joints: points, points, corners: 4 * faces.len() };
+    let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
+    channels.uvs.iter_mut().for_each(|(_, channel)| *channel = by_corner(channel, faces));
+    channels.color = channels.color.as_ref().map(|channel| by_corner(channel, faces));
+    channels.opacity = channels.opacity.as_ref().map(|channel| by_corner(channel, faces));
+    channels
+}
+
+fn by_corner<const N: usize>(channel: &Channel<N>, faces: &[[u32; 4]]) -> Channel<N> {
+    let value = |(corner, &point): (usize, &u32)| {
+        channel.at(match channel.interpolation {
+            Interpolation::Constant => 0,
+            Interpolation::Uniform => corner / 4,
+            Interpolation::Varying | Interpolation::Vertex => point as usize,
+            Interpolation::FaceVarying => corner,
+        })
+    };
+    let values = faces.as_flattened().iter().enumerate().map(value).collect();
+    Channel { interpolation: Interpolation::Vertex, values, indices: None }
 }
 
 /// The surface of a solid.
