@@ -16,6 +16,7 @@ mod authored;
 mod bindings;
 mod camera;
 mod cards;
+mod clips;
 mod crew;
 mod cycles;
 mod diagnostics;

@@ -12,6 +12,7 @@ use openusd::usd::{Attribute, InterpolationType, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
+use super::clips::Declared;
 use super::files::Files;
 use super::layer::{Kept, Met, Site};
 use super::units::Units;
@@ -44,6 +45,9 @@ pub(super) struct Reading<'a> {
     pub binding_purposes: Vec<Token>,
     /// How many of its layers were searched for cycles.
     pub layers: Cell<usize>,
+    /// True where a layer has value clips.
+    pub clipped: Cell<bool>,
+    pub declared: RefCell<Declared>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
     /// Whether there is a material of a MaterialX document at a path without prim.
@@ -52,7 +56,7 @@ pub(super) struct Reading<'a> {
     /// Threads that hold what they opened until this is gone: to let go of it would cost time that is needed.
     pub crew: RefCell<Vec<mpsc::Sender<()>>>,
     /// What was met in layers on their way.
-    met: Rc<RefCell<Met>>,
+    pub met: Rc<RefCell<Met>>,
     kept: Kept,
 }
 
@@ -94,6 +98,8 @@ impl<'a> Reading<'a> {
             purposes: Vec::new(),
             binding_purposes: Vec::new(),
             layers: Cell::new(0),
+            clipped: Cell::new(false),
+            declared: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
             authored: RefCell::default(),

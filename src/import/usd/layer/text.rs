@@ -132,6 +132,7 @@ impl Mender<'_> {
         let mut depth = 0_usize;
         let mut body = Vec::new();
         let mut start = None;
+        let mut last = 0;
         for token in tokens.by_ref() {
             let at = token.at.clone();
             match token.kind {
@@ -158,8 +159,11 @@ impl Mender<'_> {
             // What users note of knots has no say, and is in braces.
             let is_noted = depth > 1 || token.kind == Kind::Sign(b'}');
             if !is_noted && !matches!(token.kind, Kind::Quoted | Kind::Comment) {
+                if at.start > last {
+                    body.push(b' ');
+                }
+                last = at.end;
                 body.extend_from_slice(&self.text[at]);
-                body.push(b' ');
             }
         }
     }
@@ -216,4 +220,59 @@ fn blank(comment: &[u8]) -> Vec<u8> {
 /// The ends of lines in `text`.
 fn lines(text: &[u8]) -> Vec<u8> {
     text.iter().copied().filter(|b| matches!(b, b'\n' | b'\r')).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mended(text: &str) -> String {
+        mend(text.as_bytes()).map_or_else(|| text.into(), |mended| String::from_utf8(mended.bytes).unwrap())
+    }
+
+    #[test]
+    fn what_the_crate_reads_is_left_alone() {
+        for text in [
+            "#usda 1.0\ndef Xform \"A\" (doc = \"// /* */ .5\") { # .5 // here\n double x = -0.5\n}\n",
+            "#usda 1.0\ndef \"A\" { asset a = @http://a/.5@\n rel r = </A.b>\n double b.timeSamples = { 1: 2.5e-3 }\n}\n",
+            "#usda 1.0\ndef \"A\" { string s = '''it's // not\n/* a */ comment'''\n string t = \"\" # a\n}\n",
+        ] {
+            assert!(mend(text.as_bytes()).is_none(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_get_their_digits() {
+        assert_eq!(mended("double x = .5"), "double x = 0.5");
+        assert_eq!(mended("(1., -.5, 2.e3, .25e-1)"), "(1.0, -.5, 2.0e3, 0.25e-1)");
+    }
+
+    #[test]
+    fn lines_stay_where_they_are() {
+        let text = "#usda 1.1\n/* a\n b { \" */ def \"A\" { // c\n double x.spline = {\n bezier,\n 1: 2; { string a = \"}\" },\n }\n double y = AnimationBlock (\n doc = \"d\"\n )\n int[] z = edit [\n append 1\n ]\n}\n";
+        let new = mended(text);
+        assert_eq!(new.matches('\n').count(), text.matches('\n').count());
+        let line = |text: &str, what: &str| text.lines().position(|line| line.contains(what));
+        for what in ["def \"A\"", "double x", "double y", "doc = ", "int[] z"] {
+            assert_eq!(line(&new, what), line(text, what), "{what} in {new}");
+        }
+        assert!(new.starts_with("#usda 1.0\n") && new.contains("( timeSamples = None;"), "{new}");
+        assert!(new.contains("\"\"\" bezier, 1: 2; ,\"\"\""), "{new}");
+    }
+
+    #[test]
+    fn what_is_not_done_is_told_with_its_path() {
+        let text = "def \"A\" (\n customData = { string b = \"def\" }\n) {\n over \"B\" { }\n def Mesh \"C\" {\n int[] z = edit [append [1]]\n double w.timeSamples = { 1: 2 }\n}\n}";
+        let mended = mend(text.as_bytes()).unwrap();
+        assert_eq!(mended.told.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>(), ["/A/C.z"]);
+    }
+
+    /// Whatever is cut off where, nothing is lost and nothing breaks.
+    #[test]
+    fn text_may_end_anywhere() {
+        let text = "#usda 1.1\n/* a */ def \"A\" ( prepend inactiveIds = [1] ) { double x.spline = { 1: 2; { string a = '''b''' } }\n double y = AnimationBlock ( )\n int[] z = edit [ [1] ]\n asset a = @@@b@@@ // c\n}\n";
+        for end in 0..text.len() {
+            let _ = mend(&text.as_bytes()[..end]);
+        }
+    }
 }
