@@ -22,7 +22,7 @@ POINTS = "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n"
 
 
 def nothing_differs(path, *args, frame=None, interpolation=None):
-    found = judge(path, *args, *([] if frame is None else ["--frame", frame]), frame=frame, interpolation=interpolation)
+    found = judge(path, *args, *([] if frame is None else [f"--frame={frame}"]), frame=frame, interpolation=interpolation)
     assert not found, "\n".join(found)
 
 
@@ -212,8 +212,7 @@ def moved(array, rates, gains):
 
 @pytest.mark.parametrize("rates", [*ALIGNED, None])
 @pytest.mark.parametrize("gains", ["both", "not above"])
-@pytest.mark.parametrize("frame", [-3, 0, 4, 10, 13, 25])
-def test_velocities_count_where_openusd_says(tmp_path, rates, gains, frame):
+def test_velocities_count_where_openusd_says(tmp_path, rates, gains):
     path = tmp_path / "stage.usda"
     path.write_text(
         HEAD.format("")
@@ -239,10 +238,10 @@ float[] widths = [1, 2]
 }}
 """
     )
-    nothing_differs(path, frame=frame)
-    told = any("are not at the times of those" in warning for warning in read(path, "--frame", frame)["warnings"])
-    if frame == 4:
-        assert told == (rates in (None, "not above", "not below", "one") or gains == "not above")
+    for frame in (-3, 0, 4, 10, 13, 25):
+        nothing_differs(path, frame=frame)
+    told = any("are not at the times of those" in warning for warning in read(path, "--frame=4")["warnings"])
+    assert told == (rates not in ("both", "fewer") or (rates == "both" and gains == "not above"))
 
 
 def clip(first, second, points):
@@ -339,14 +338,15 @@ def Mesh "T" {{
     (tmp_path / "instanced.usda").write_text(
         HEAD.format("") + "".join(f'def Xform "{name}" {reference} {{\n}}\n' for name in "AB")
     )
-    for file in ("root.usda", "instanced.usda"):
-        for frame in (0, 4.9, 5, 9.5, 10, 12, 19, 20, 25, 35):
+    for file in ("root.usda",) if declared else ("root.usda", "instanced.usda"):
+        for frame in (0, 4.9, 10, 12, 19, 25):
             path = tmp_path / file
             nothing_differs(path, frame=frame)
             # What OpenUSD shows is not merely told of.
-            stage, answer = Stage(path, frame), Answer(read(path, "--frame", frame))
+            stage, answer = Stage(path, frame), Answer(read(path, f"--frame={frame}"))
             for prim in stage.gprims():
-                shown = bool(stage.faces(prim)[1])
+                faces = stage.faces(prim)
+                shown = bool(faces and faces[1])
                 assert bool(answer.instances[str(prim.GetPath())]) == shown, (file, frame, answer.warnings)
 
 
@@ -370,5 +370,5 @@ def Mesh "T" {{
     for frame in (-1, 0, 4, 10, 12):
         nothing_differs(path, "--interpolation", "held", frame=frame, interpolation="held")
         nothing_differs(path, "--interpolation", "linear", frame=frame)
-    held = np.reshape(of(path, "/A/T")("--frame", 4, "--interpolation", "held")[0]["matrix"], (4, 4))
+    held = np.reshape(of(path, "/A/T")("--frame=4", "--interpolation", "held")[0]["matrix"], (4, 4))
     assert held[3, 0] == 0.0

@@ -2,20 +2,19 @@
 //! a value's type. Their tables are written anew behind the rest of the file; no other byte moves.
 //!
 //! Versions 0.12 to 0.14 differ from 0.11 in what they may hold: curves, how tangents were found, edits of
-//! arrays. `Usd_CrateFile` is the description of the format.
+//! arrays. Blocks of animation are in files of any version. `Usd_CrateFile` describes the format.
 
 use openusd::usdc::{CrateFile, MAGIC};
 
 use super::Mended;
 use super::kept::EDIT;
 
-/// Bytes in which the version is told.
+/// Bytes in which a layer's kind and version are told.
 pub(super) const HEAD: usize = 16;
 
 /// Where the minor version stands.
 const MINOR: usize = MAGIC.len() + 1;
-/// The first version that may hold something to mend, the last that the crate reads and that is known here.
-const FIRST: u8 = 12;
+/// The last version that the crate reads, and that is known here.
 const READ: u8 = 12;
 const LAST: u8 = 14;
 
@@ -30,19 +29,39 @@ const BLOCK: u64 = 51 << 48;
 const SPLINE: u64 = 59 << 48;
 const ANIMATION_BLOCK: u64 = 60 << 48;
 
-/// True for a binary layer of which something may have to be mended.
-pub(super) fn is_newer(head: &[u8]) -> bool {
-    head.starts_with(MAGIC) && head.get(MINOR - 1) == Some(&0) && head.get(MINOR).is_some_and(is_known)
+/// True for a binary layer.
+pub(super) fn is_binary(head: &[u8]) -> bool {
+    head.starts_with(MAGIC)
 }
 
-fn is_known(version: &u8) -> bool {
-    (FIRST..=LAST).contains(version)
+/// True where a version or the type of a value is newer than the crate; also where that can't be told.
+fn is_newer(bytes: &[u8]) -> bool {
+    let is_known = |value: &[u8]| {
+        let value = value.try_into().map_or(0, u64::from_le_bytes);
+        value & IS_EDIT == 0 && !matches!(value & TYPE, SPLINE | ANIMATION_BLOCK)
+    };
+    let newer = bytes.get(MINOR).is_some_and(|version| *version > READ);
+    newer || values(bytes).is_none_or(|values| !values.chunks_exact(8).all(is_known))
+}
+
+/// The values of all fields, unpacked.
+fn values(bytes: &[u8]) -> Option<Vec<u8>> {
+    let entry = section(bytes, "FIELDS")?;
+    let count = number(bytes, number(bytes, entry + 16)?)?;
+    let names = number(bytes, entry + 16)? + 8;
+    let packed = names.checked_add(8)?.checked_add(number(bytes, names)?)?;
+    let start = packed.checked_add(8)?;
+    let packed = bytes.get(start..start.checked_add(number(bytes, packed)?)?)?;
+    unpack(packed, count.checked_mul(8)?)
 }
 
 /// The file in the crate's words; `None` where it is in them, or broken.
 pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
+    if !is_newer(bytes) || bytes.get(MINOR - 1) != Some(&0) {
+        return None;
+    }
     let mut bytes = bytes.to_vec();
-    let version = bytes.get_mut(MINOR)?;
+    let version = bytes.get_mut(MINOR).filter(|version| **version <= LAST)?;
     let is_read = *version <= READ;
     *version = (*version).min(READ);
     let mut file = CrateFile::open(bytes.clone()).ok()?;
@@ -101,19 +120,63 @@ fn told(file: &CrateFile, edits: &[usize]) -> Vec<(String, String)> {
 
 /// Puts `data` at the end of the file and makes it the section `name`.
 fn append(bytes: &mut Vec<u8>, name: &str, data: &[u8]) -> Option<()> {
-    let number = |bytes: &[u8], at: usize| -> Option<usize> {
-        usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok()
-    };
-    let contents = number(bytes, HEAD)?;
-    let count = number(bytes, contents)?;
-    let entry = (0..count).map(|i| contents + 8 + 32 * i).find(|&entry| {
-        bytes.get(entry..entry + 16).is_some_and(|text| text.split(|&b| b == 0).next() == Some(name.as_bytes()))
-    })?;
+    let entry = section(bytes, name)?;
     let start = bytes.len() as u64;
     bytes.extend_from_slice(data);
     bytes.get_mut(entry + 16..entry + 24)?.copy_from_slice(&start.to_le_bytes());
     bytes.get_mut(entry + 24..entry + 32)?.copy_from_slice(&(data.len() as u64).to_le_bytes());
     Some(())
+}
+
+/// Where the table of contents has the section `name`: 16 bytes of name, its start, its size.
+fn section(bytes: &[u8], name: &str) -> Option<usize> {
+    let contents = number(bytes, HEAD)?;
+    let count = number(bytes, contents)?.min(bytes.len() / 32);
+    (0..count).map(|i| contents + 8 + 32 * i).find(|&entry| {
+        bytes.get(entry..entry + 16).is_some_and(|text| text.split(|&b| b == 0).next() == Some(name.as_bytes()))
+    })
+}
+
+/// The number at `at`.
+fn number(bytes: &[u8], at: usize) -> Option<usize> {
+    usize::try_from(u64::from_le_bytes(bytes.get(at..at.checked_add(8)?)?.try_into().ok()?)).ok()
+}
+
+/// What a block of LZ4 holds, at most `size` bytes; `None` for one that is broken or in pieces, which no file
+/// of tables has.
+fn unpack(block: &[u8], size: usize) -> Option<Vec<u8>> {
+    let (&pieces, block) = block.split_first()?;
+    if pieces != 0 {
+        return None;
+    }
+    let mut input = block.iter().copied();
+    let mut output = Vec::new();
+    let length = |input: &mut std::iter::Copied<std::slice::Iter<'_, u8>>, first: u8| {
+        let mut length = usize::from(first);
+        while first == 15 {
+            let more = input.next()?;
+            length += usize::from(more);
+            if more < 255 {
+                break;
+            }
+        }
+        Some(length)
+    };
+    while let Some(token) = input.next() {
+        let count = length(&mut input, token >> 4)?;
+        let literals = input.as_slice().get(..count)?;
+        output.extend_from_slice(literals);
+        input = input.as_slice()[count..].iter().copied();
+        let Some(low) = input.next() else { break };
+        let back = usize::from(u16::from_le_bytes([low, input.next()?]));
+        let count = length(&mut input, token & 15)? + 4;
+        let start = output.len().checked_sub(back).filter(|_| back > 0)?;
+        if output.len() + count > size {
+            return None;
+        }
+        (start..start + count).for_each(|i| output.push(output[i]));
+    }
+    Some(output)
 }
 
 fn tokens(file: &CrateFile) -> Option<Vec<u8>> {
@@ -157,4 +220,33 @@ fn block(data: &[u8]) -> Option<Vec<u8>> {
     let mut block = (packed.len() as u64).to_le_bytes().to_vec();
     block.append(&mut packed);
     Some(block)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is packed here and elsewhere comes out as it was.
+    #[test]
+    fn blocks_are_unpacked() {
+        for length in [0, 1, 14, 15, 16, 269, 270, 271, 1000] {
+            let data: Vec<u8> = (0..length).map(|i| (i * 7 % 251) as u8).collect();
+            assert_eq!(unpack(&block(&data).unwrap()[8..], length), Some(data));
+        }
+        // A literal, then nine more of it; and what reaches before the start or beyond the size.
+        let again = [0, 0x15, b'a', 1, 0, 0x10, b'b'];
+        assert_eq!(unpack(&again, 11).as_deref(), Some(&b"aaaaaaaaaab"[..]));
+        assert_eq!(unpack(&again, 9), None);
+        assert_eq!(unpack(&[0, 0x15, b'a', 2, 0, 0x10, b'b'], 11), None);
+        assert_eq!(unpack(&[1, 0x10, b'a'], 1), None);
+    }
+
+    #[test]
+    fn broken_files_are_left_to_the_crate() {
+        let file = std::fs::read("tests/data/usd/corpus/rich.usdc").unwrap();
+        assert!(!is_newer(&file) && mend(&file).is_none());
+        for end in (0..file.len()).step_by(97) {
+            assert!(mend(&file[..end]).is_none(), "{end} bytes");
+        }
+    }
 }

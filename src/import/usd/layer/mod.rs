@@ -45,7 +45,7 @@ pub(super) fn mend(mut asset: Box<dyn Asset>, name: &str, met: &mut Met) -> io::
     asset.rewind()?;
     let head = &head[..length];
     let is_text = head.trim_ascii_start().starts_with(openusd::usda::MAGIC);
-    if !is_text && !binary::is_newer(head) {
+    if !is_text && !binary::is_binary(head) {
         return Ok(asset);
     }
     let bytes = asset.into_buffer()?;

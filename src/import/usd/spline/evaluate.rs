@@ -120,40 +120,51 @@ fn hermite(before: &Knot, after: &Knot, time: f64) -> f64 {
 
 fn bezier(before: &Knot, after: &Knot, time: f64) -> f64 {
     let span = after.time - before.time;
-    let [w0, w1] = forward([before.after.width / span, after.before.width / span]);
-    let u = parameter([0.0, w0, 1.0 - w1, 1.0], (time - before.time) / span);
+    let [w0, w1] = forward([before.after.width / span, after.before.width / span]).map(|share| share * span);
+    let times = power([before.time - time, before.time + w0 - time, after.time - w1 - time, after.time - time]);
+    let u = root(times).clamp(0.0, 1.0);
     let (v0, v1) = (before.value, after.value_before());
-    cubic([v0, v0 + w0 * span * before.after.slope, v1 - w1 * span * after.before.slope, v1], u)
+    let [a, b, c, d] = power([v0, v0 + w0 * before.after.slope, v1 - w1 * after.before.slope, v1]);
+    ((a * u + b) * u + c) * u + d
 }
 
-/// A Bézier polynomial at `u`.
-fn cubic([a, b, c, d]: [f64; 4], u: f64) -> f64 {
-    let v = 1.0 - u;
-    v * v * (v * a + 3.0 * u * b) + u * u * (3.0 * v * c + u * d)
+/// A Bézier polynomial's coefficients, the highest first.
+fn power([p0, p1, p2, p3]: [f64; 4]) -> [f64; 4] {
+    [-p0 + 3.0 * p1 - 3.0 * p2 + p3, 3.0 * p0 - 6.0 * p1 + 3.0 * p2, -3.0 * p0 + 3.0 * p1, p0]
 }
 
-/// Where the polynomial of times, which only grows, is at `time`: bisection, which nothing leads astray, then
-/// Newton's steps as far as they stay between.
-fn parameter(times: [f64; 4], time: f64) -> f64 {
-    let [a, b, c, d] = times;
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut u = 0.5;
-    for _ in 0..100 {
-        let off = cubic(times, u) - time;
-        if off == 0.0 {
-            break;
-        }
-        *(if off > 0.0 { &mut high } else { &mut low }) = u;
-        let v = 1.0 - u;
-        let rate = 3.0 * (v * v * (b - a) + 2.0 * v * u * (c - b) + u * u * (d - c));
-        let newton = u - off / rate;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if next == u {
-            break;
-        }
-        u = next;
+/// Where a polynomial that only grows from 0 to 1 is 0 there, by Cardano's formulas, as in OpenUSD: where a curve
+/// is upright, digits are lost, and these are to be the same.
+fn root([a, b, c, d]: [f64; 4]) -> f64 {
+    const FLAT: f64 = 1e-10;
+    let nearest = |roots: &[f64]| roots.iter().copied().min_by(|x, y| (x - 0.5).abs().total_cmp(&(y - 0.5).abs()));
+    if a.abs() < FLAT && b.abs() < FLAT {
+        return if c.abs() < FLAT { 0.0 } else { -d / c };
     }
-    u
+    if a.abs() < FLAT {
+        let part = (c * c - 4.0 * b * d).sqrt();
+        return nearest(&[(-c - part) / (2.0 * b), (-c + part) / (2.0 * b)]).unwrap_or(0.0);
+    }
+    let (b, c, d) = (b / a, c / a, d / a);
+    let p3 = (3.0 * c - b * b) / 3.0 / 3.0;
+    let p33 = p3 * p3 * p3;
+    let q = (2.0 * b * b * b - 9.0 * b * c + 27.0 * d) / 27.0;
+    let q2 = q / 2.0;
+    let b3 = b / 3.0;
+    let discriminant = q2 * q2 + p33;
+    if discriminant < 0.0 {
+        let r = (-p33).sqrt();
+        let angle = (-q / (2.0 * r)).clamp(-1.0, 1.0).acos();
+        let scale = 2.0 * r.cbrt();
+        let roots = [0.0, 2.0, 4.0].map(|turn| scale * ((angle + turn * std::f64::consts::PI) / 3.0).cos() - b3);
+        return nearest(&roots).unwrap_or(0.0);
+    }
+    if discriminant == 0.0 {
+        let u = -q2.cbrt();
+        return nearest(&[2.0 * u - b3, -u - b3]).unwrap_or(0.0);
+    }
+    let part = discriminant.sqrt();
+    (part - q2).cbrt() - (part + q2).cbrt() - b3
 }
 
 /// Widths of tangents, as shares of their segment, that do not lead back in time: those that do are made
