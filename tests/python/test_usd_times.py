@@ -88,7 +88,7 @@ def test_curves_have_openusds_values(curved, file, frame):
 
 
 def test_curves_of_lights_and_cameras_have_openusds_values(tmp_path):
-    curve = "{\nbezier,\n0: 20; post curve (4, 2),\n10: 60; pre (5, 1); post linear,\n20: 30\n}\n"
+    curve = "{\nbezier,\n0: 20; post curve (4, 2),\n10: 60; pre (5, 1); post linear,\n20: 30,\n}\n"
     path = tmp_path / "stage.usda"
     path.write_text(
         HEAD.format("")
@@ -124,7 +124,7 @@ def test_newer_text_is_read_as_openusd_reads_it(tmp_path):
 
 BLOCKED = {
     "weaker samples": ["double x = AnimationBlock", "double x.timeSamples = { 1: 5 }", "double x = 8"],
-    "a weaker curve": ["double x = AnimationBlock (\ndoc = \"h\"\n)", "double x.spline = {\n1: 5\n}", "double x = 8"],
+    "a weaker curve": ["double x = AnimationBlock (\ndoc = \"h\"\n)", "double x.spline = {\n1: 5,\n}", "double x = 8"],
     "own samples": ["double x = AnimationBlock\ndouble x.timeSamples = { 1: 2 }", "double x.timeSamples = { 1: 5 }"],
     "own default": ["double x = AnimationBlock", "double x = 7\ndouble x.timeSamples = { 1: 5 }"],
 }
@@ -334,20 +334,14 @@ def Mesh "T" {{
 }}
 """
     (tmp_path / "root.usda").write_text(HEAD.format("") + prim)
-    reference = "(instanceable = true\nreferences = @root.usda@</Clipped> (offset = 3))"
-    (tmp_path / "instanced.usda").write_text(
-        HEAD.format("") + "".join(f'def Xform "{name}" {reference} {{\n}}\n' for name in "AB")
-    )
-    for file in ("root.usda",) if declared else ("root.usda", "instanced.usda"):
-        for frame in (0, 4.9, 10, 12, 19, 25):
-            path = tmp_path / file
-            nothing_differs(path, frame=frame)
-            # What OpenUSD shows is not merely told of.
-            stage, answer = Stage(path, frame), Answer(read(path, f"--frame={frame}"))
-            for prim in stage.gprims():
-                faces = stage.faces(prim)
-                shown = bool(faces and faces[1])
-                assert bool(answer.instances[str(prim.GetPath())]) == shown, (file, frame, answer.warnings)
+    path = tmp_path / "root.usda"
+    for frame in (0, 4.9, 10, 12, 19, 25):
+        nothing_differs(path, frame=frame)
+        # What OpenUSD shows is not merely told of.
+        stage, answer = Stage(path, frame), Answer(read(path, f"--frame={frame}"))
+        for prim in stage.gprims():
+            faces = stage.faces(prim)
+            assert bool(answer.instances[str(prim.GetPath())]) == bool(faces and faces[1]), (frame, answer.warnings)
 
 
 def test_samples_are_held_where_that_is_asked_for(tmp_path):

@@ -149,27 +149,15 @@ fn unpack(block: &[u8], size: usize) -> Option<Vec<u8>> {
     if pieces != 0 {
         return None;
     }
-    let mut input = block.iter().copied();
+    let mut input = block.iter();
     let mut output = Vec::new();
-    let length = |input: &mut std::iter::Copied<std::slice::Iter<'_, u8>>, first: u8| {
-        let mut length = usize::from(first);
-        while first == 15 {
-            let more = input.next()?;
-            length += usize::from(more);
-            if more < 255 {
-                break;
-            }
-        }
-        Some(length)
-    };
     while let Some(token) = input.next() {
-        let count = length(&mut input, token >> 4)?;
-        let literals = input.as_slice().get(..count)?;
-        output.extend_from_slice(literals);
-        input = input.as_slice()[count..].iter().copied();
+        let count = length(token >> 4, &mut input)?;
+        output.extend_from_slice(input.as_slice().get(..count)?);
+        input = input.as_slice()[count..].iter();
         let Some(low) = input.next() else { break };
-        let back = usize::from(u16::from_le_bytes([low, input.next()?]));
-        let count = length(&mut input, token & 15)? + 4;
+        let back = usize::from(u16::from_le_bytes([*low, *input.next()?]));
+        let count = length(token & 15, &mut input)? + 4;
         let start = output.len().checked_sub(back).filter(|_| back > 0)?;
         if output.len() + count > size {
             return None;
@@ -177,6 +165,18 @@ fn unpack(block: &[u8], size: usize) -> Option<Vec<u8>> {
         (start..start + count).for_each(|i| output.push(output[i]));
     }
     Some(output)
+}
+
+/// A length whose first four bits are `first`.
+fn length(first: u8, input: &mut std::slice::Iter<'_, u8>) -> Option<usize> {
+    let mut length = usize::from(first);
+    let mut more = first == 15;
+    while more {
+        let byte = *input.next()?;
+        length += usize::from(byte);
+        more = byte == 255;
+    }
+    Some(length)
 }
 
 fn tokens(file: &CrateFile) -> Option<Vec<u8>> {
