@@ -18,6 +18,9 @@ const MINOR: usize = MAGIC.len() + 1;
 const READ: u8 = 12;
 const LAST: u8 = 14;
 
+/// The field of an attribute's samples.
+const SAMPLES: &str = "timeSamples";
+
 /// Values: six bytes of data or of a place in the file, a type, flags.
 const TYPE: u64 = 0xff << 48;
 const ARRAY: u64 = 1 << 63;
@@ -68,6 +71,7 @@ pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
     let mut mended = Mended { bytes: Vec::new(), splines: false, told: Vec::new() };
     let mut changed = false;
     let mut edits = Vec::new();
+    let mut blocks = Vec::new();
     for i in 0..file.fields.len() {
         let value = file.fields[i].value_rep.0;
         let (name, value) = match value & TYPE {
@@ -81,7 +85,10 @@ pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
                 (None, UCHAR | ARRAY | (value & DATA))
             }
             // Hides the samples of weaker layers: known to the crate as samples that are blocked.
-            ANIMATION_BLOCK => (Some("timeSamples"), BLOCK | INLINED),
+            ANIMATION_BLOCK => {
+                blocks.push(i);
+                (Some(SAMPLES), BLOCK | INLINED)
+            }
             _ => continue,
         };
         changed = true;
@@ -94,9 +101,39 @@ pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
         return (!is_read).then_some(Mended { bytes, ..mended });
     }
     mended.told = told(&file, &edits);
+    if let Some(fieldsets) = unblocked(&mut file, &blocks) {
+        append(&mut bytes, "FIELDSETS", &fieldsets)?;
+    }
     append(&mut bytes, "TOKENS", &tokens(&file)?)?;
     append(&mut bytes, "FIELDS", &fields(&file)?)?;
     Some(Mended { bytes, ..mended })
+}
+
+/// The table of sets of fields, in which samples count before the blocks among their own set; `None` where no set
+/// has both.
+fn unblocked(file: &mut CrateFile, blocks: &[usize]) -> Option<Vec<u8>> {
+    let is_samples = |field: usize| {
+        let name = file.fields.get(field).and_then(|field| file.tokens.get(field.token_index));
+        name.is_some_and(|name| name == SAMPLES) && !blocks.contains(&field)
+    };
+    let mut both = Vec::new();
+    let mut start = 0;
+    for set in file.fieldsets.split(Option::is_none) {
+        if !blocks.is_empty() && set.iter().flatten().any(|field| is_samples(*field)) {
+            both.extend((0..set.len()).filter(|&i| set[i].is_some_and(|f| blocks.contains(&f))).map(|i| start + i));
+        }
+        start += set.len() + 1;
+    }
+    let &field = blocks.first().filter(|_| !both.is_empty())?;
+    let mut spare = file.fields[field];
+    spare.token_index = token(&mut file.tokens, EDIT);
+    file.fields.push(spare);
+    both.into_iter().for_each(|i| file.fieldsets[i] = Some(file.fields.len() - 1));
+    let indices: Option<Vec<i32>> =
+        file.fieldsets.iter().map(|field| field.map_or(Some(-1), |field| i32::try_from(field).ok())).collect();
+    let mut data = (file.fieldsets.len() as u64).to_le_bytes().to_vec();
+    data.extend(block(&integers(&indices?))?);
+    Some(data)
 }
 
 /// Index of the token `name`, which is added where it is not there.

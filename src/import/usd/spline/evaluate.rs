@@ -119,8 +119,7 @@ fn hermite(before: &Knot, after: &Knot, time: f64) -> f64 {
 }
 
 fn bezier(before: &Knot, after: &Knot, time: f64) -> f64 {
-    let span = after.time - before.time;
-    let [w0, w1] = forward([before.after.width / span, after.before.width / span]).map(|share| share * span);
+    let [w0, w1] = forward([before.after.width, after.before.width], after.time - before.time);
     let times = power([before.time - time, before.time + w0 - time, after.time - w1 - time, after.time - time]);
     let u = root(times).clamp(0.0, 1.0);
     let (v0, v1) = (before.value, after.value_before());
@@ -167,29 +166,28 @@ fn root([a, b, c, d]: [f64; 4]) -> f64 {
     (part - q2).cbrt() - (part + q2).cbrt() - b3
 }
 
-/// Widths of tangents, as shares of their segment, that do not lead back in time: those that do are made
-/// shorter in the same proportion until the curve is upright at one place (TsAntiRegressionKeepRatio, with the
-/// margins that OpenUSD leaves).
-fn forward([start, end]: [f64; 2]) -> [f64; 2] {
+/// Widths of tangents of a segment `span` long that do not lead back in time: those that do are made shorter in
+/// the same proportion until the curve is upright at one place (TsAntiRegressionKeepRatio, with the margins that
+/// OpenUSD leaves).
+fn forward(widths: [f64; 2], span: f64) -> [f64; 2] {
     const READ: f64 = 1e-6;
     const WRITE: f64 = 1e-5;
-    if start <= 1.0 && end <= 1.0 {
-        return [start, end];
-    }
+    let [start, end] = widths.map(|width| width / span);
     // Curves that are upright somewhere lie on an ellipse of the two widths.
     let (a, b) = (start + READ, end + READ);
-    if a * a + b * b - 2.0 * (a + b) + a * b + 1.0 <= 0.0 {
-        return [start, end];
+    let leads_back = a * a + b * b - 2.0 * (a + b) + a * b + 1.0 > 0.0;
+    if (start <= 1.0 && end <= 1.0) || !leads_back {
+        return widths;
     }
     if start < READ {
-        return [start, 1.0 - WRITE];
+        return [widths[0], (1.0 - WRITE) * span];
     }
     if end < READ {
-        return [1.0 - WRITE, end];
+        return [(1.0 - WRITE) * span, widths[1]];
     }
     let ratio = start / end;
     let shorter = (ratio.sqrt() + ratio + 1.0) / (ratio * ratio + ratio + 1.0);
-    [ratio * shorter - WRITE, shorter - WRITE]
+    [(ratio * shorter - WRITE) * span, (shorter - WRITE) * span]
 }
 
 /// The knots of a curve, with those that its loops repeat, which are never stored: there may be billions.
