@@ -165,7 +165,8 @@ def PointInstancer "I" {{
 "#
         );
         let loaded = read(&text, 4.0);
-        let told = loaded.said.iter().any(|said| said.contains("/I: the samples of its velocities are not at the times"));
+        let told =
+            loaded.said.iter().any(|said| said.contains("/I: the samples of its velocities are not at the times"));
         (loaded.origin("/I/P"), told)
     };
     assert_eq!(place(".timeSamples = { 0: [(0, 1, 0)], 10: [(0, 2, 0)] }"), ([0.0, 4.0, 0.0], false));

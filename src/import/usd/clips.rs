@@ -33,7 +33,10 @@ pub(super) fn declare(reading: &Reading<'_>, prim: &Prim) {
         match clips.clip_manifest_asset_path(&set).ok().flatten() {
             Some(asset) => {
                 let manifest = asset.resolved_path().map_or_else(
-                    || DefaultResolver::new().create_identifier(asset.asset_path(), Some(&ResolvedPath::new(&site.layer))),
+                    || {
+                        DefaultResolver::new()
+                            .create_identifier(asset.asset_path(), Some(&ResolvedPath::new(&site.layer)))
+                    },
                     ToOwned::to_owned,
                 );
                 if let Some(manifest) = open(reading, &manifest) {

@@ -106,7 +106,8 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
         let (hold, held) = mpsc::channel();
         let (starter, started) = mpsc::channel();
         let (shares, next, sender, noter) = (shares.clone(), next.clone(), sender.clone(), noter.clone());
-        let crew = Crew { shares, next, sender, aside, shutter: shutter.map(|shutter| (shutter, noter)), started, held };
+        let crew =
+            Crew { shares, next, sender, aside, shutter: shutter.map(|shutter| (shutter, noter)), started, held };
         let (path, options) = (reading.place.file.as_deref().map(PathBuf::from), reading.options.clone());
         // Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
         let worker = std::thread::Builder::new().stack_size(super::STACK);
@@ -157,12 +158,7 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
 }
 
 /// When something in the stage has a sample while the shutter is open, by what each thread notes of its shares.
-fn moments(
-    reading: &Reading<'_>,
-    shutter: [f64; 2],
-    shares: &[Vec<Path>],
-    notes: &mpsc::Receiver<Note>,
-) -> Vec<f64> {
+fn moments(reading: &Reading<'_>, shutter: [f64; 2], shares: &[Vec<Path>], notes: &mpsc::Receiver<Note>) -> Vec<f64> {
     let mut walk = Walk::new(Clock::noting(reading));
     divide(&mut walk);
     let mut missing: Vec<usize> = (0..shares.len()).collect();

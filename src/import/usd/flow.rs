@@ -50,7 +50,8 @@ impl Flow {
                 return None;
             }
             if values.len() != count {
-                reading.warn(prim.path(), format!("has {} {name} for {count} {array}; they are left out", values.len()));
+                reading
+                    .warn(prim.path(), format!("has {} {name} for {count} {array}; they are left out", values.len()));
                 return None;
             }
             Some(values)

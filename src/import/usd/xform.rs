@@ -97,9 +97,8 @@ impl Xform {
         let mut ops = self.ops.iter().peekable();
         while let Some(op) = ops.next() {
             // A pivot that is undone at once: one that is singular would else spoil everything.
-            let undone = |next: &&Op| {
-                next.op.name() == op.op.name() && next.op.is_inverse_op() != op.op.is_inverse_op()
-            };
+            let undone =
+                |next: &&Op| next.op.name() == op.op.name() && next.op.is_inverse_op() != op.op.is_inverse_op();
             if ops.next_if(undone).is_some() {
                 continue;
             }

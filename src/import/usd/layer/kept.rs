@@ -13,7 +13,7 @@ use super::super::spline::{self, Spline};
 pub(super) const KEPT: &str = "penumbra";
 /// What operations on `inactiveIds` are named.
 pub(super) const INACTIVE: &str = "penumbra_inactiveIds";
-/// What edits of arrays are named.
+/// What the crate is not to see is named.
 pub(super) const EDIT: &str = "penumbra_edit";
 
 /// A curve that gives an attribute its values.
@@ -101,11 +101,8 @@ impl Site {
     /// The value at `time`; `None` where the curve has none there.
     pub fn at(&self, time: TimeCode) -> Option<Value> {
         let LayerOffset { offset, scale } = self.offset;
-        let time = if time.is_earliest_time() {
-            self.spline.knots.first()?.time
-        } else {
-            (time.value() - offset) / scale
-        };
+        let time =
+            if time.is_earliest_time() { self.spline.knots.first()?.time } else { (time.value() - offset) / scale };
         let value = self.spline.at(time)?;
         Some(match self.kind {
             ScalarKind::Half => Value::Half(half::f16::from_f64(value)),

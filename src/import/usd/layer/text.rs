@@ -63,6 +63,9 @@ impl Mender<'_> {
         let mut name = None;
         let mut property = None;
         while let Some(token) = tokens.next() {
+            if token.kind == Kind::Quoted {
+                self.quoted(&token);
+            }
             let sign_before = match &before[1] {
                 Some(Token { kind: Kind::Sign(sign), .. }) => *sign,
                 _ => 0,
@@ -94,7 +97,9 @@ impl Mender<'_> {
                     (b"inactiveIds", 0) if before[1].as_ref().is_some_and(|word| self.is_list_op(word)) => {
                         self.changes.push((token.at.clone(), INACTIVE.as_bytes().to_vec()));
                     }
-                    (word, _) if round == 0 && word != b"timeSamples" => property = Some(String::from_utf8_lossy(word).into_owned()),
+                    (word, _) if round == 0 && word != b"timeSamples" => {
+                        property = Some(String::from_utf8_lossy(word).into_owned())
+                    }
                     _ => {}
                 },
                 _ => {}
@@ -113,6 +118,24 @@ impl Mender<'_> {
 
     fn is_sign_next(&self, tokens: &Lexer<'_>, sign: u8) -> bool {
         Lexer { text: self.text, at: tokens.at }.next().is_some_and(|token| token.kind == Kind::Sign(sign))
+    }
+
+    /// In strings of three quotes the crate ends at a quote that is escaped, unless by its number.
+    fn quoted(&mut self, token: &Token) {
+        let quote = self.text[token.at.start];
+        if quote == b'@' || !self.word(token).starts_with(&[quote; 3]) {
+            return;
+        }
+        let mut i = token.at.start + 3;
+        while i + 3 < token.at.end {
+            if self.text[i] == b'\\' {
+                if self.text[i + 1] == quote {
+                    self.changes.push((i..i + 2, format!("\\x{quote:02x}").into_bytes()));
+                }
+                i += 1;
+            }
+            i += 1;
+        }
     }
 
     /// The crate wants digits on both sides of the point.
@@ -245,6 +268,13 @@ mod tests {
     fn numbers_get_their_digits() {
         assert_eq!(mended("double x = .5"), "double x = 0.5");
         assert_eq!(mended("(1., -.5, 2.e3, .25e-1)"), "(1.0, -.5, 2.0e3, 0.25e-1)");
+    }
+
+    #[test]
+    fn quotes_in_three_quotes_are_escaped_by_number() {
+        assert_eq!(mended("s = \"\"\"a\\\"\"\"b\"\"\""), "s = \"\"\"a\\x22\"\"b\"\"\"");
+        assert_eq!(mended("s = '''a\\'b''' // c"), "s = '''a\\x27b'''     ");
+        assert_eq!(mended("s = \"a\\\"b\""), "s = \"a\\\"b\"");
     }
 
     #[test]

@@ -225,7 +225,8 @@ mod tests {
     #[test]
     fn a_cube_has_the_colors_of_its_faces_points_and_corners() {
         let faces = [Vec3::Z, -Vec3::Z, Vec3::Y, -Vec3::Y, Vec3::X, -Vec3::X];
-        let points = [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (-1, -1, -1), (-1, 1, -1), (1, 1, -1), (1, -1, -1)];
+        let points =
+            [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (-1, -1, -1), (-1, 1, -1), (1, 1, -1), (1, -1, -1)];
         let points = points.map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32));
         let (mesh, told) = shape("Cube", &greys(6, "uniform"));
         assert_eq!(told, [""; 0]);

@@ -43,9 +43,7 @@ impl Spline {
                 (inside, Side::After, -turns * (last.value_before() - first.value_before()))
             }
             Beyond::Repeat => (inside, Side::After, -turns * (last.value - first.value)),
-            Beyond::Oscillate if turns.rem_euclid(2.0) == 1.0 => {
-                (first.time + (last.time - inside), Side::Before, 0.0)
-            }
+            Beyond::Oscillate if turns.rem_euclid(2.0) == 1.0 => (first.time + (last.time - inside), Side::Before, 0.0),
             _ => (inside, Side::After, 0.0),
         }
     }

@@ -6,14 +6,106 @@ use super::*;
 type Known = (&'static str, &'static [(f64, Option<f64>)]);
 
 const KNOWN: &[Known] = &[
-    ("bezier, pre: linear, post: sloped(0.5), 1: 3; pre (0, 0); post curve (0.2, 0.5), 5: 4 & 7; pre (1, 2); post held, 8: 2; post linear, 10: 1", &[(-2.0, Some(1.5)), (1.0, Some(3.0)), (1.1, Some(3.002675557777)), (3.0, Some(2.793635325178)), (4.999, Some(3.998002230174)), (5.0, Some(7.0)), (7.0, Some(7.0)), (9.0, Some(1.5)), (10.0, Some(1.0)), (12.0, Some(2.0))]),
-    ("hermite, pre: held, post: linear, 0: 0; post curve (1), 4: 5; pre (-1); post curve (2), 6: 1 & 2; pre (0.5); post linear, 9: -1", &[(-1.0, Some(0.0)), (1.0, Some(1.53125)), (3.5, Some(5.22265625)), (5.0, Some(3.375)), (6.0, Some(2.0)), (7.0, Some(1.0)), (9.0, Some(-1.0)), (11.0, Some(-3.0))]),
-    ("bezier, 0: 0; post curve (7, 1), 10: 5; pre (8, 1)", &[(1.0, Some(0.960690990749)), (4.9, Some(1.884258026561)), (5.0, Some(1.821153385026)), (5.1, Some(1.772546751953)), (9.0, Some(4.029257849785))]),
-    ("bezier, pre: none, post: none, 0: 1; post none, 2: 3; post linear, 4: 5; post held", &[(-1.0, None), (0.0, None), (1.0, None), (2.0, Some(3.0)), (3.0, Some(4.0)), (4.0, None), (5.0, None)]),
-    ("bezier, pre: loop repeat, post: loop repeat, 1: 1 & 2; post curve (1, 0), 4: 6; pre (1, 1); post linear, 6: 5 & 9", &[(-9.0, Some(-6.0)), (-4.0, Some(-2.0)), (-0.5, Some(1.75)), (1.0, Some(2.0)), (5.0, Some(5.5)), (6.0, Some(9.0)), (7.0, Some(9.814814814815)), (11.0, Some(16.0)), (17.5, Some(24.625))]),
-    ("bezier, pre: loop reset, post: loop reset, 1: 1 & 2; post linear, 4: 6; post held, 6: 5 & 9", &[(-9.0, Some(2.0)), (-4.0, Some(2.0)), (-0.5, Some(6.0)), (1.0, Some(2.0)), (5.0, Some(6.0)), (6.0, Some(2.0)), (7.0, Some(3.333333333333)), (11.0, Some(2.0)), (17.5, Some(4.0))]),
-    ("bezier, pre: loop oscillate, post: loop oscillate, 1: 1 & 2; post linear, 4: 6; post held, 6: 5 & 9", &[(-9.0, Some(2.0)), (-4.0, Some(6.0)), (-0.5, Some(4.0)), (1.0, Some(2.0)), (5.0, Some(6.0)), (6.0, Some(6.0)), (7.5, Some(6.0)), (11.0, Some(2.0)), (17.5, Some(6.0))]),
-    ("bezier, pre: held, post: held, loop: (2, 4, 1, 2, 0.5), -1: 3; post linear, 2: 1; post linear, 3: 4; post curve (0.5, 1), 12: 2; pre (1, 0)", &[(-2.0, Some(3.0)), (-0.5, Some(1.75)), (0.25, Some(1.25)), (1.5, Some(3.026768498515)), (2.5, Some(2.5)), (3.75, Some(2.697514785058)), (4.25, Some(2.25)), (6.5, Some(3.5)), (7.9, Some(3.030571737321)), (9.0, Some(2.375)), (13.0, Some(2.0))]),
+    (
+        "bezier, pre: linear, post: sloped(0.5), 1: 3; pre (0, 0); post curve (0.2, 0.5), 5: 4 & 7; pre (1, 2); post held, 8: 2; post linear, 10: 1",
+        &[
+            (-2.0, Some(1.5)),
+            (1.0, Some(3.0)),
+            (1.1, Some(3.002675557777)),
+            (3.0, Some(2.793635325178)),
+            (4.999, Some(3.998002230174)),
+            (5.0, Some(7.0)),
+            (7.0, Some(7.0)),
+            (9.0, Some(1.5)),
+            (10.0, Some(1.0)),
+            (12.0, Some(2.0)),
+        ],
+    ),
+    (
+        "hermite, pre: held, post: linear, 0: 0; post curve (1), 4: 5; pre (-1); post curve (2), 6: 1 & 2; pre (0.5); post linear, 9: -1",
+        &[
+            (-1.0, Some(0.0)),
+            (1.0, Some(1.53125)),
+            (3.5, Some(5.22265625)),
+            (5.0, Some(3.375)),
+            (6.0, Some(2.0)),
+            (7.0, Some(1.0)),
+            (9.0, Some(-1.0)),
+            (11.0, Some(-3.0)),
+        ],
+    ),
+    (
+        "bezier, 0: 0; post curve (7, 1), 10: 5; pre (8, 1)",
+        &[
+            (1.0, Some(0.960690990749)),
+            (4.9, Some(1.884258026561)),
+            (5.0, Some(1.821153385026)),
+            (5.1, Some(1.772546751953)),
+            (9.0, Some(4.029257849785)),
+        ],
+    ),
+    (
+        "bezier, pre: none, post: none, 0: 1; post none, 2: 3; post linear, 4: 5; post held",
+        &[(-1.0, None), (0.0, None), (1.0, None), (2.0, Some(3.0)), (3.0, Some(4.0)), (4.0, None), (5.0, None)],
+    ),
+    (
+        "bezier, pre: loop repeat, post: loop repeat, 1: 1 & 2; post curve (1, 0), 4: 6; pre (1, 1); post linear, 6: 5 & 9",
+        &[
+            (-9.0, Some(-6.0)),
+            (-4.0, Some(-2.0)),
+            (-0.5, Some(1.75)),
+            (1.0, Some(2.0)),
+            (5.0, Some(5.5)),
+            (6.0, Some(9.0)),
+            (7.0, Some(9.814814814815)),
+            (11.0, Some(16.0)),
+            (17.5, Some(24.625)),
+        ],
+    ),
+    (
+        "bezier, pre: loop reset, post: loop reset, 1: 1 & 2; post linear, 4: 6; post held, 6: 5 & 9",
+        &[
+            (-9.0, Some(2.0)),
+            (-4.0, Some(2.0)),
+            (-0.5, Some(6.0)),
+            (1.0, Some(2.0)),
+            (5.0, Some(6.0)),
+            (6.0, Some(2.0)),
+            (7.0, Some(3.333333333333)),
+            (11.0, Some(2.0)),
+            (17.5, Some(4.0)),
+        ],
+    ),
+    (
+        "bezier, pre: loop oscillate, post: loop oscillate, 1: 1 & 2; post linear, 4: 6; post held, 6: 5 & 9",
+        &[
+            (-9.0, Some(2.0)),
+            (-4.0, Some(6.0)),
+            (-0.5, Some(4.0)),
+            (1.0, Some(2.0)),
+            (5.0, Some(6.0)),
+            (6.0, Some(6.0)),
+            (7.5, Some(6.0)),
+            (11.0, Some(2.0)),
+            (17.5, Some(6.0)),
+        ],
+    ),
+    (
+        "bezier, pre: held, post: held, loop: (2, 4, 1, 2, 0.5), -1: 3; post linear, 2: 1; post linear, 3: 4; post curve (0.5, 1), 12: 2; pre (1, 0)",
+        &[
+            (-2.0, Some(3.0)),
+            (-0.5, Some(1.75)),
+            (0.25, Some(1.25)),
+            (1.5, Some(3.026768498515)),
+            (2.5, Some(2.5)),
+            (3.75, Some(2.697514785058)),
+            (4.25, Some(2.25)),
+            (6.5, Some(3.5)),
+            (7.9, Some(3.030571737321)),
+            (9.0, Some(2.375)),
+            (13.0, Some(2.0)),
+        ],
+    ),
 ];
 
 #[test]
@@ -53,7 +145,9 @@ fn bytes_and_text_are_the_same() {
 
 #[test]
 fn broken_text_is_no_curve() {
-    for text in ["1", "1: ", "1: x", "1: 2; post sideways", "1: 2; pre (1", "pre: up", "loop: (1, 2)", "1: nan", "1: inf"] {
+    for text in
+        ["1", "1: ", "1: x", "1: 2; post sideways", "1: 2; pre (1", "pre: up", "loop: (1, 2)", "1: nan", "1: inf"]
+    {
         assert_eq!(from_text(text), None, "{text}");
     }
     assert_eq!(from_text("").unwrap().at(3.0), None);

@@ -36,11 +36,8 @@ impl<'a> Words<'a> {
     fn next(&mut self) -> Option<&'a str> {
         let rest = self.rest.trim_start();
         let first = rest.chars().next()?;
-        let length = if is_of_word(first) {
-            rest.find(|c| !is_of_word(c)).unwrap_or(rest.len())
-        } else {
-            first.len_utf8()
-        };
+        let length =
+            if is_of_word(first) { rest.find(|c| !is_of_word(c)).unwrap_or(rest.len()) } else { first.len_utf8() };
         let (word, rest) = rest.split_at(length);
         self.rest = rest;
         Some(word)
