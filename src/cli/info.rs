@@ -21,7 +21,8 @@ pub fn command() -> Command {
             Arg::new("frame")
                 .long("frame")
                 .value_name("F")
-                .value_parser(clap::value_parser!(f64))
+                .value_parser(super::scene::parse_frame)
+                .allow_negative_numbers(true)
                 .help("Frame to read"),
         )
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))

@@ -62,9 +62,9 @@ mod scene {
     use super::ArgMatches;
     use penumbra::desc::SceneDesc;
     use penumbra::error::{Result, Warnings};
-    use penumbra::import::{self, ImportOptions, LightUnits, Purpose};
+    use penumbra::import::{self, ImportOptions, Interpolation, LightUnits, Purpose};
 
-    pub fn args() -> [Arg; 5] {
+    pub fn args() -> [Arg; 6] {
         [
             Arg::new("scene")
                 .value_name("SCENE")
@@ -91,6 +91,12 @@ mod scene {
                     "Purposes of USD prims to show beside those without one, as render,guide [default: those of the \
                      stage's render settings, else render]",
                 ),
+            Arg::new("interpolation")
+                .long("interpolation")
+                .value_name("TYPE")
+                .value_parser(["linear", "held"])
+                .default_value("linear")
+                .help("What USD's time samples are between their times"),
             Arg::new("subdivision")
                 .long("subdivision")
                 .value_name("N")
@@ -136,6 +142,10 @@ mod scene {
             variants: args.get_many("variant").into_iter().flatten().cloned().collect(),
             light_units,
             purposes: args.get_many::<String>("purpose").map(|names| names.map(|name| purpose(name)).collect()),
+            interpolation: match args.get_one::<String>("interpolation").map(String::as_str) {
+                Some("held") => Interpolation::Held,
+                _ => Interpolation::Linear,
+            },
             subdivision: args.get_one("subdivision").copied().unwrap_or(default.subdivision),
             ..default
         };

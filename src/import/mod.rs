@@ -47,6 +47,18 @@ pub struct ImportOptions {
     /// Which of USD's purposes are shown beside `default`; `None` for those that the stage's own render
     /// settings include, `render` where they say nothing.
     pub purposes: Option<Vec<Purpose>>,
+    /// What USD's time samples are between their times.
+    pub interpolation: Interpolation,
+}
+
+/// What is between samples in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The value of the sample before.
+    Held,
+    /// On a straight line, for numbers.
+    #[default]
+    Linear,
 }
 
 /// Purposes of USD prims that a render may show or not.
@@ -69,6 +81,7 @@ impl Default for ImportOptions {
             light_units: LightUnits::Spec,
             subdivision: 2,
             purposes: None,
+            interpolation: Interpolation::Linear,
         }
     }
 }

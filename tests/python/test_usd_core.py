@@ -73,9 +73,9 @@ class Differences(list):
             self.append(f"{path}: {what}")
 
 
-def judge(path, *args, frame=None):
+def judge(path, *args, frame=None, interpolation=None):
     """All differences between Penumbra and OpenUSD at the stage `path`."""
-    stage, answer, found = Stage(path, frame), Answer(read(path, *args)), Differences()
+    stage, answer, found = Stage(path, frame, interpolation), Answer(read(path, *args)), Differences()
     judge_shapes(stage, answer, found)
     judge_lights(stage, answer, found)
     judge_cameras(stage, answer, found)

@@ -37,8 +37,10 @@ def along_piece(values, basis, wrap, k, t):
 class Stage:
     """A stage at the time at which Penumbra reads it."""
 
-    def __init__(self, path, frame=None):
+    def __init__(self, path, frame=None, interpolation=None):
         self.stage = Usd.Stage.Open(str(path))
+        if interpolation == "held":
+            self.stage.SetInterpolationType(Usd.InterpolationTypeHeld)
         ranged = self.stage.HasAuthoredTimeCodeRange()
         if frame is not None:
             self.time = Usd.TimeCode(frame)
@@ -137,7 +139,7 @@ class Stage:
         the counts don't fit."""
         mesh = UsdGeom.Mesh(prim)
         get = lambda attribute, dtype: np.array(attribute.Get(self.time) or [], dtype=dtype)
-        points = mesh.GetPointsAttr().Get(self.time)
+        points = self.points(mesh)
         if points is not None and not isinstance(points, Vt.Vec3fArray):
             return None
         points = np.array(points or [], np.float32).reshape(-1, 3)
@@ -149,6 +151,12 @@ class Stage:
         ends = np.cumsum(counts)
         kept = [(i, indices[ends[i] - n : ends[i]]) for i, n in enumerate(counts) if n >= 3 and i not in holes]
         return points, kept
+
+    def points(self, schema):
+        """Points where velocities have carried them."""
+        if schema.GetVelocitiesAttr().HasAuthoredValue():
+            return schema.ComputePointsAtTime(self.time, self.time)
+        return schema.GetPointsAttr().Get(self.time)
 
     def corners(self, prim, faces, name, width):
         """The primvar `name`, of `width` numbers, of every corner of `faces`; `None` where there is none that fits."""
@@ -212,7 +220,7 @@ class Stage:
     def balls(self, prim):
         """Centres and radii of the points that have both, in rows."""
         points = UsdGeom.Points(prim)
-        centers = np.array(points.GetPointsAttr().Get(self.time) or [], float).reshape(-1, 3)
+        centers = np.array(self.points(points) or [], float).reshape(-1, 3)
         interpolation, widths = self.widths(prim, points)
         radii = (widths[:1].repeat(len(centers)) if interpolation == "constant" else widths[: len(centers)]) / 2
         balls = np.column_stack([centers, radii])

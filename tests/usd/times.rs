@@ -1,9 +1,27 @@
 //! Time codes, interpolation and the shutter.
 
-use penumbra::import::ImportOptions;
+use std::path::PathBuf;
+
+use penumbra::import::{ImportOptions, Interpolation};
 use penumbra::math::DVec3;
 
-use super::{at_frame, load, near};
+use super::{Loaded, at_frame, load, near, try_load};
+
+/// A stage of several files, the first of which is its root layer.
+fn stage_of(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        std::fs::write(dir.path().join(name), text).unwrap();
+    }
+    let root = dir.path().join(files[0].0);
+    (dir, root)
+}
+
+fn read(text: &str, frame: f64) -> Loaded {
+    let head = "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" timeCodesPerSecond = 1 )\n";
+    let (_dir, path) = stage_of(&[("stage.usda", &format!("{head}{text}"))]);
+    try_load(&path, &at_frame(frame)).unwrap()
+}
 
 #[test]
 fn samples_are_interpolated_or_held() {
@@ -74,4 +92,158 @@ def Cube "A" {
     for options in [ImportOptions::default(), at_frame(1.0), at_frame(5.0)] {
         assert_eq!(super::try_load(&path, &options).unwrap().origin("/A"), [1.0, 2.0, 3.0]);
     }
+}
+
+/// usd-core 26.11's values of these curves.
+#[test]
+fn curves_give_their_values() {
+    let text = r#"
+def Xform "A" {
+    double xformOp:translateX.spline = { hermite, post: linear,
+        0: 0; post curve (1),
+        10: .5; pre (-1),
+    }
+    float xformOp:rotateZ.spline = { bezier,
+        1: 0; post curve (2, 10),
+        5: 90; pre (1, 0); post held; { string note = "hi" },
+        8: 20,
+    }
+    uniform token[] xformOpOrder = ["xformOp:translateX", "xformOp:rotateZ"]
+    def Cube "T" { double size.spline = { post: sloped(0.5), 1: 3; post linear, 5: 4 & 7; post held, 8: 2 } }
+}
+"#;
+    for (frame, x, degrees, size) in
+        [(0.0, 0.0, 0.0, 3.0), (3.0, 2.208, 40.800_918_579, 3.5), (6.0, 2.724, 90.0, 7.0), (12.0, -1.5, 20.0, 4.0)]
+    {
+        let loaded = read(text, frame);
+        let cube = loaded.one("/A/T");
+        near(cube.transform.translation, [x, 0.0, 0.0]);
+        let turned = cube.transform.transform_vector3(DVec3::X);
+        assert!((turned.y.atan2(turned.x).to_degrees() - degrees).abs() < 1e-4, "{frame}: {turned}");
+        assert_eq!(loaded.scene.mesh(cube).unwrap().points[0][0], (0.5 * size) as f32);
+        loaded.said_nothing();
+    }
+}
+
+#[test]
+fn what_follows_a_curve_moves_while_a_shutter_is_open() {
+    let text = r#"
+def Camera "C" { double shutter:open = -1
+ double shutter:close = 1 }
+def Cube "T" {
+    double xformOp:translateX.spline = { 0: 0; post linear, 4: 4; post linear, 8: 0 }
+    uniform token[] xformOpOrder = ["xformOp:translateX"]
+}
+"#;
+    let loaded = read(text, 4.0);
+    let motion = &loaded.one("/T").motion;
+    let at = |time: f64| motion.iter().find(|m| m.time == time).unwrap().value.translation.x;
+    assert_eq!([at(-1.0), at(0.0), at(1.0)], [3.0, 4.0, 3.0]);
+    assert!(motion.len() > 4 && motion.windows(2).all(|pair| pair[0].time < pair[1].time));
+}
+
+/// `--interpolation held`, OpenUSD's `SetInterpolationType(Usd.InterpolationTypeHeld)`.
+#[test]
+fn samples_are_held_where_that_is_asked_for() {
+    let options = ImportOptions { interpolation: Interpolation::Held, ..at_frame(6.0) };
+    assert_eq!(load("times.usda", &options).origin("/Linear/T"), [0.0, 0.0, 0.0]);
+}
+
+/// `ComputeInstanceTransformsAtTimes` of usd-core 26.11 at time code 4.
+#[test]
+fn velocities_count_where_their_samples_are_those_of_the_positions() {
+    let place = |rates: &str| {
+        let text = format!(
+            r#"
+def PointInstancer "I" {{
+    int[] protoIndices = [0]
+    point3f[] positions.timeSamples = {{ 0: [(0, 0, 0)], 10: [(10, 0, 0)] }}
+    vector3f[] velocities{rates}
+    rel prototypes = </I/P>
+    def Cube "P" {{}}
+}}
+"#
+        );
+        let loaded = read(&text, 4.0);
+        let told =
+            loaded.said.iter().any(|said| said.contains("/I: the samples of its velocities are not at the times"));
+        (loaded.origin("/I/P"), told)
+    };
+    assert_eq!(place(".timeSamples = { 0: [(0, 1, 0)], 10: [(0, 2, 0)] }"), ([0.0, 4.0, 0.0], false));
+    for rates in ["{ 0: [(0, 1, 0)], 9: [(0, 2, 0)] }", "{ 0: [(0, 1, 0)] }", "{ 1: [(0, 1, 0)], 10: [(0, 2, 0)] }"] {
+        assert_eq!(place(&format!(".timeSamples = {rates}")), ([4.0, 0.0, 0.0], true), "{rates}");
+    }
+    assert_eq!(place(" = [(0, 1, 0)]"), ([4.0, 0.0, 0.0], true));
+}
+
+/// What a schema knows is reached though only the clips have it; the manifest is made where there is none.
+#[test]
+fn clips_reach_what_the_stage_does_not_declare() {
+    for manifest in ["", "asset manifestAssetPath = @./manifest.usda@"] {
+        let root = format!(
+            r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Xform "A" (
+    clips = {{
+        dictionary default = {{
+            asset[] assetPaths = [@./clip.usda@]
+            string primPath = "/Clip"
+            double2[] active = [(0, 0)]
+            {manifest}
+        }}
+    }}
+)
+{{
+    def Mesh "T" {{
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        uniform token subdivisionScheme = "none"
+    }}
+}}
+"#
+        );
+        let clip = r#"#usda 1.0
+def "Clip" { def "T" {
+    point3f[] points.timeSamples = { 0: [(0, 0, 0), (1, 0, 0), (0, 1, 0)], 4: [(0, 0, 0), (3, 0, 0), (0, 1, 0)] }
+} }
+"#;
+        let declared = "#usda 1.0\ndef \"Clip\" { def \"T\" { point3f[] points\n } }\n";
+        let (_dir, path) = stage_of(&[("root.usda", &root), ("clip.usda", clip), ("manifest.usda", declared)]);
+        let loaded = try_load(&path, &at_frame(2.0)).unwrap();
+        loaded.said_nothing();
+        assert_eq!(loaded.scene.mesh(loaded.one("/A/T")).unwrap().points[1], [2.0, 0.0, 0.0]);
+    }
+}
+
+/// Wide stages are read by many threads; what moves is the same, instances and what is above included.
+#[test]
+fn many_threads_agree_on_when_something_moves() {
+    let mover = |name: &str, extra: &str, samples: &str| {
+        format!(
+            "def {name} ({extra}) {{\n double3 xformOp:translate.timeSamples = {{ {samples} }}\n uniform token[] xformOpOrder = [\"xformOp:translate\"]\n"
+        )
+    };
+    let mut text = String::from("def Camera \"C\" { double shutter:open = -1\n double shutter:close = 1 }\n");
+    text += "class \"K\" { def Cube \"P\" { } }\n";
+    text += &mover("Xform \"W\"", "", "0: (0, 0, 0), 10: (10, 0, 0)");
+    for i in 0..600 {
+        text += &mover(&format!("Cube \"M{i}\""), "", &format!("0: (0, {i}, 0), 10: (0, {}, 0)", i + 10));
+        text += "}\n";
+    }
+    text += &mover("Xform \"N\"", "instanceable = true inherits = </K>", "4.5: (0, 0, 1), 6.5: (0, 0, 3)");
+    text += "}\n}\n";
+    let loaded = read(&text, 5.0);
+    // The instance's own sample lies between the ends of the shutter.
+    for (path, at_open, at_sample) in
+        [("/W/M7", [4.0, 11.0, 0.0], [4.5, 11.5, 0.0]), ("/W/M599", [4.0, 603.0, 0.0], [4.5, 603.5, 0.0])]
+    {
+        let motion = &loaded.one(path).motion;
+        assert_eq!(motion.iter().map(|m| m.time).collect::<Vec<_>>(), [-1.0, -0.5, 1.0]);
+        near(motion[0].value.translation, at_open);
+        near(motion[1].value.translation, at_sample);
+    }
+    let motion = &loaded.one("/W/N/P").motion;
+    near(motion[0].value.translation, [4.0, 0.0, 1.0]);
+    near(motion[2].value.translation, [6.0, 0.0, 2.5]);
+    assert_eq!(loaded.scene.instances.len(), 601);
 }

@@ -24,17 +24,22 @@ const SHARE: usize = 64;
 /// Opening a larger root layer once more would take too long and too much memory.
 const LARGE: u64 = 64 << 20;
 
-/// Everything that is shown while nothing moves.
+/// Everything that is shown: while nothing moves, or with what moves within the reading's shutter, for which all
+/// is walked through once more before, to know when something has a sample.
 pub(super) fn gather(reading: &Reading<'_>, aside: fn(&str) -> bool) -> Haul {
-    match divide(reading) {
+    match divide(&mut Walk::new(Clock::still(reading))) {
         Some(division) => by_many(reading, division, aside),
-        None => by_one(Clock::still(reading), aside),
+        None => by_one(reading, aside),
     }
 }
 
-/// Everything that is shown when `clock` says.
-pub(super) fn by_one(clock: Clock<'_, '_>, aside: fn(&str) -> bool) -> Haul {
-    let mut gatherer = Gatherer::new(clock, aside);
+fn by_one(reading: &Reading<'_>, aside: fn(&str) -> bool) -> Haul {
+    let times = reading.shutter.get().map(|shutter| {
+        let mut walk = Walk::new(Clock::noting(reading));
+        walk.stage();
+        walk.clock.samples(shutter)
+    });
+    let mut gatherer = Gatherer::new(Clock::at(reading, times.unwrap_or_default()), aside);
     let shown = gatherer.walk.stage();
     let mut haul = Haul { shapes: vec![Vec::new()], ..Haul::default() };
     gatherer.resolve(shown, 0, &mut haul.shapes[0], &mut haul.found);
@@ -48,14 +53,14 @@ struct Division {
     shares: Vec<Vec<Path>>,
 }
 
-/// Where `reading` is to be divided. That depends on the stage alone, so that it is read in the same order
-/// by any number of threads.
-fn divide(reading: &Reading<'_>) -> Option<Division> {
+/// Where the stage of `walk` is to be divided. That depends on the stage alone, so that it is read in the same
+/// order by any number of threads.
+fn divide(walk: &mut Walk<'_, '_>) -> Option<Division> {
+    let reading = walk.reading;
     let size = reading.place.file.as_ref().and_then(|file| std::fs::metadata(file).ok()).map_or(0, |file| file.len());
     if size > LARGE {
         return None;
     }
-    let mut walk = Walk::new(Clock::still(reading));
     let root = reading.stage.prim(Path::abs_root()).ok()?;
     let mut level: Vec<_> =
         root.children().ok()?.into_iter().map(|prim| (prim, std::rc::Rc::new(walk.root()))).collect();
@@ -86,23 +91,41 @@ struct Part {
 }
 
 fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -> Haul {
-    let shares = Arc::new(division.shares);
+    let Division { mut above, shares } = division;
+    let shares = Arc::new(shares);
     let mut parts: Vec<Option<Part>> = shares.iter().map(|_| None).collect();
     let threads = rayon::current_num_threads().min(shares.len());
-    let next = Arc::new(AtomicUsize::new(0));
-    let (sender, parcels) = mpsc::channel();
     // With one thread there is no point in opening the stage twice.
-    for _ in 0..if threads > 1 { threads } else { 0 } {
+    let threads = if threads > 1 { threads } else { 0 };
+    let shutter = reading.shutter.get();
+    let next = Arc::new([const { AtomicUsize::new(0) }; 2]);
+    let (sender, parcels) = mpsc::channel();
+    let (noter, notes) = mpsc::channel();
+    let mut start = Vec::new();
+    for _ in 0..threads {
         let (hold, held) = mpsc::channel();
-        let crew = Crew { shares: shares.clone(), next: next.clone(), sender: sender.clone(), aside, held };
+        let (starter, started) = mpsc::channel();
+        let (shares, next, sender, noter) = (shares.clone(), next.clone(), sender.clone(), noter.clone());
+        let crew =
+            Crew { shares, next, sender, aside, shutter: shutter.map(|shutter| (shutter, noter)), started, held };
         let (path, options) = (reading.place.file.as_deref().map(PathBuf::from), reading.options.clone());
         // Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
         let worker = std::thread::Builder::new().stack_size(super::STACK);
         if worker.spawn(move || path.map(|path| crew.work(&path, &options))).is_ok() {
             reading.crew.borrow_mut().push(hold);
+            start.push(starter);
         }
     }
-    drop(sender);
+    drop((sender, noter));
+    let mut clock = Clock::still(reading);
+    if let Some(shutter) = shutter {
+        let times = moments(reading, shutter, &shares, &notes);
+        start.iter().for_each(|start| _ = start.send(times.clone()));
+        clock = Clock::at(reading, times);
+        // What is above the shares stands where it does at each of the times.
+        let mut walk = Walk::new(Clock::at(reading, clock.times.clone()));
+        above = divide(&mut walk).map_or(above, |division| division.above);
+    }
     for parcel in parcels {
         match parcel {
             Parcel::Part(number, part) => parts[number] = Some(part),
@@ -110,12 +133,13 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
         }
     }
 
-    let mut gatherer = Gatherer::new(Clock::still(reading), aside);
-    let mut haul = Haul::default();
+    let times = clock.times.clone();
+    let mut gatherer = Gatherer::new(clock, aside);
+    let mut haul = Haul { times, ..Haul::default() };
     let mut own = Vec::new();
     // Shapes that are read here are a batch of their own, after those of the shares.
     let last = parts.len();
-    gatherer.resolve(division.above, last, &mut own, &mut haul.found);
+    gatherer.resolve(above, last, &mut own, &mut haul.found);
     for (number, (part, share)) in parts.into_iter().zip(shares.iter()).enumerate() {
         let part = part.unwrap_or_else(|| share_of(&mut gatherer, share, number));
         haul.shapes.push(part.shapes);
@@ -133,28 +157,70 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
     haul
 }
 
+/// When something in the stage has a sample while the shutter is open, by what each thread notes of its shares.
+fn moments(reading: &Reading<'_>, shutter: [f64; 2], shares: &[Vec<Path>], notes: &mpsc::Receiver<Note>) -> Vec<f64> {
+    let mut walk = Walk::new(Clock::noting(reading));
+    divide(&mut walk);
+    let mut missing: Vec<usize> = (0..shares.len()).collect();
+    let mut times = Vec::new();
+    for note in notes {
+        missing.retain(|share| *share != note.share);
+        times.extend(note.times);
+        note.later.iter().for_each(|path| walk.from(path, &mut Vec::new()));
+    }
+    for path in missing.iter().flat_map(|share| &shares[*share]) {
+        walk.from(path, &mut Vec::new());
+    }
+    times.extend(walk.clock.samples(shutter));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
 enum Parcel {
     Part(usize, Part),
     Warnings(Warnings),
 }
 
+/// When something in a share has a sample, and its instances.
+struct Note {
+    share: usize,
+    times: Vec<f64>,
+    later: Vec<Path>,
+}
+
 /// What a thread works with.
 struct Crew {
     shares: Arc<Vec<Vec<Path>>>,
-    next: Arc<AtomicUsize>,
+    /// The share that is noted, and that is read next.
+    next: Arc<[AtomicUsize; 2]>,
     sender: mpsc::Sender<Parcel>,
     aside: fn(&str) -> bool,
+    /// Where a shutter is open: from when to when, and who is told what has samples in it.
+    shutter: Option<([f64; 2], mpsc::Sender<Note>)>,
+    /// Gives the times of all samples, once every share was noted.
+    started: mpsc::Receiver<Vec<f64>>,
     /// Ends with the stage that the work is for.
     held: mpsc::Receiver<()>,
 }
 
 impl Crew {
-    fn work(self, path: &std::path::Path, options: &ImportOptions) {
+    fn work(mut self, path: &std::path::Path, options: &ImportOptions) {
         let Ok(reading) = Reading::open(path, options) else { return };
-        let mut gatherer = Gatherer::new(Clock::still(&reading), self.aside);
-        loop {
-            let number = self.next.fetch_add(1, Ordering::Relaxed);
-            let Some(share) = self.shares.get(number) else { break };
+        let mut clock = Clock::still(&reading);
+        if let Some((shutter, noter)) = self.shutter.take() {
+            reading.shutter.set(Some(shutter));
+            while let Some((number, share)) = self.take(0) {
+                if noter.send(note(&reading, shutter, share, number)).is_err() {
+                    return;
+                }
+            }
+            drop(noter);
+            let Ok(times) = self.started.recv() else { return };
+            clock = Clock::at(&reading, times);
+        }
+        let mut gatherer = Gatherer::new(clock, self.aside);
+        while let Some((number, share)) = self.take(1) {
             let part = share_of(&mut gatherer, share, number);
             if self.sender.send(Parcel::Part(number, part)).is_err() {
                 return;
@@ -165,6 +231,20 @@ impl Crew {
         drop(self.sender);
         let _ = self.held.recv();
     }
+
+    /// The next share, with its number.
+    fn take(&self, turn: usize) -> Option<(usize, &Vec<Path>)> {
+        let number = self.next[turn].fetch_add(1, Ordering::Relaxed);
+        Some((number, self.shares.get(number)?))
+    }
+}
+
+fn note(reading: &Reading<'_>, shutter: [f64; 2], share: &[Path], number: usize) -> Note {
+    let mut walk = Walk::new(Clock::noting(reading));
+    walk.later = Some(Vec::new());
+    share.iter().for_each(|path| walk.from(path, &mut Vec::new()));
+    let later = walk.later.take().unwrap_or_default();
+    Note { share: number, times: walk.clock.samples(shutter), later: later.into_iter().map(|(_, path)| path).collect() }
 }
 
 /// What is at and below the prims of `share`, instances aside.

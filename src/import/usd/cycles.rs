@@ -1,6 +1,7 @@
 //! Inherits and specializes that lead back to where they started. OpenUSD leaves the last of them out; the
 //! openusd crate (0.8) follows them until the stack ends, so they are taken out of its layers, in memory,
-//! before anything below them is composed.
+//! before anything below them is composed. As that looks at every prim of a layer, it notes which stages have
+//! value clips.
 
 use std::collections::{HashMap, HashSet};
 
@@ -67,6 +68,9 @@ fn collect(reading: &Reading<'_>, identifier: &str, arcs: &mut Vec<Arc>) {
     };
     let mut stack = vec![sdf::Path::abs_root()];
     while let Some(spec) = stack.pop() {
+        if data.has_field(&spec, FieldKey::Clips.as_str()) {
+            reading.clipped.set(true);
+        }
         for field in ARCS {
             let Ok(Some(value)) = data.try_field(&spec, field.as_str()) else { continue };
             let Value::PathListOp(list) = value.into_owned() else { continue };

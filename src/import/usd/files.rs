@@ -6,12 +6,15 @@ use std::cell::RefCell;
 use std::fs::{self, File};
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use openusd::ar::{Asset, AssetInfo, DefaultResolver, ResolvedPath, Resolver};
+use openusd::ar::{Asset, AssetBuffer, AssetInfo, DefaultResolver, ResolvedPath, Resolver};
 use openusd::usd::SchemaRegistry;
 use rayon::prelude::*;
+
+use super::layer::{self, Met};
 
 /// Bytes that a thread reads at a time; smaller files are left to the crate.
 const PIECE: usize = 1 << 22;
@@ -21,6 +24,8 @@ pub(super) struct Files {
     inner: DefaultResolver,
     /// The root layer, read before it was asked for.
     root: RefCell<Option<(PathBuf, Vec<u8>)>>,
+    /// What was met in layers on their way.
+    met: Rc<RefCell<Met>>,
 }
 
 impl Files {
@@ -30,7 +35,12 @@ impl Files {
         let is_package = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("usdz"));
         let read = || if is_package { None } else { Some((fs::canonicalize(path).ok()?, read(path)?)) };
         let (root, schemas) = rayon::join(read, openusd_schemas::schema_registry);
-        (Self { inner: DefaultResolver::new(), root: RefCell::new(root) }, schemas)
+        (Self { inner: DefaultResolver::new(), root: RefCell::new(root), met: Rc::default() }, schemas)
+    }
+
+    /// What is met in the layers that are read.
+    pub fn met(&self) -> Rc<RefCell<Met>> {
+        self.met.clone()
     }
 
     /// All of the large file at `path`.
@@ -58,10 +68,11 @@ fn read(path: &Path) -> Option<Vec<u8>> {
 
 impl Resolver for Files {
     fn open_asset(&self, path: &ResolvedPath) -> io::Result<Box<dyn Asset>> {
-        match self.take(path) {
-            Some(bytes) => Ok(Box::new(Cursor::new(bytes))),
-            None => self.inner.open_asset(path),
-        }
+        let asset = match self.take(path) {
+            Some(bytes) => Box::new(Cursor::new(AssetBuffer::Owned(bytes))),
+            None => self.inner.open_asset(path)?,
+        };
+        layer::mend(asset, &path.to_string(), &mut self.met.borrow_mut())
     }
 
     fn create_identifier(&self, asset_path: &str, anchor: Option<&ResolvedPath>) -> String {

@@ -235,21 +235,26 @@ impl<'r, 'a> Clock<'r, 'a> {
         Self { movers: Some(Vec::new()), ..Self::still(reading) }
     }
 
-    /// Of a walk in which the shutter is open from `open` to `close`: both, and every sample between them
-    /// of what was met before. `None` where nothing moves.
-    pub fn moving(&mut self, [open, close]: [f64; 2]) -> Option<Self> {
+    /// Of a walk that looks at `times`.
+    pub fn at(reading: &'r Reading<'a>, times: Vec<f64>) -> Self {
+        Self { reading, times, movers: None }
+    }
+
+    /// When to look at what was met while the shutter is open from `open` to `close`: at both, and at every
+    /// sample between them. Empty where nothing moves.
+    pub fn samples(&mut self, [open, close]: [f64; 2]) -> Vec<f64> {
         let frame = self.reading.time.value();
         let movers = self.movers.take().unwrap_or_default();
         let samples: Vec<Vec<f64>> = movers.iter().filter_map(|m| m.samples(frame + open, frame + close)).collect();
         if samples.is_empty() {
-            return None;
+            return Vec::new();
         }
         let mut times: Vec<f64> = samples.into_iter().flatten().map(|time| time - frame).collect();
         times.retain(|time| open < *time && *time < close);
         times.extend([open, close]);
         times.sort_by(f64::total_cmp);
         times.dedup();
-        Some(Self { reading: self.reading, times, movers: None })
+        times
     }
 
     /// Takes note of something that might move.

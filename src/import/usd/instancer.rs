@@ -7,7 +7,9 @@ use openusd::gf::{Quatf, Quath, Vec3f};
 use openusd::sdf;
 use openusd::usd::{Prim, TimeCode};
 
+use super::flow::{self, Flow, vector};
 use super::inherit::{Context, Mover, Pose};
+use super::layer;
 use super::shape::tint::{self, Tint};
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
@@ -30,12 +32,13 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
     if !walk.affords(indices.iter().map(of).fold(0, usize::saturating_add), prim) {
         return;
     }
-    let Some(places) = transforms(reading, prim, count, reading.time) else {
+    let Some(layout) = Layout::of(reading, prim, count) else {
         let what = format!("has {count} protoIndices but another number of positions; its instances are left out");
         return reading.warn(prim.path(), what);
     };
     let colors = tint::of_instances(reading, prim, count);
-    let motion = motion(walk, prim, count);
+    let places = layout.at(reading.time);
+    let motion = motion(walk, prim, &layout);
     let mask = mask(reading, prim, count);
     let mut lost = 0;
     for (i, index) in indices.into_iter().enumerate() {
@@ -129,88 +132,108 @@ fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path:
 }
 
 /// The transforms of all instances at each time of the shutter, if they move.
-fn motion(walk: &mut Walk<'_, '_>, prim: &Prim, count: usize) -> Option<Vec<Vec<DAffine3>>> {
-    let reading = walk.reading;
+fn motion(walk: &mut Walk<'_, '_>, prim: &Prim, layout: &Layout<'_>) -> Option<Vec<Vec<DAffine3>>> {
     let attributes = || PLACES.map(|name| prim.attribute(name)).to_vec();
-    let has = |name| reading.value::<Vec<Vec3f>>(prim, name).is_some_and(|values| !values.is_empty());
-    let flows = || has("velocities") || has("angularVelocities");
-    walk.clock.note(|| Mover::Attributes(attributes(), flows()));
+    let flows = layout.flow.is_some() || layout.spin.is_some();
+    walk.clock.note(|| Mover::Instances(attributes(), flows));
     let varies = || attributes().iter().any(|a| a.value_might_be_time_varying().unwrap_or(false));
-    if walk.clock.times.is_empty() || !(varies() || flows()) {
+    if walk.clock.times.is_empty() || !(flows || varies()) {
         return None;
     }
-    let frame = reading.time.value();
-    walk.clock.times.iter().map(|time| transforms(reading, prim, count, TimeCode::new(frame + time))).collect()
+    let frame = walk.reading.time.value();
+    Some(walk.clock.times.iter().map(|time| layout.at(TimeCode::new(frame + time))).collect())
 }
 
-/// Where the instances stand within the instancer at `time`, as UsdGeomPointInstancer's
-/// ComputeInstanceTransformsAtTime does without the prototypes' own transforms. `None` where their number
-/// is another than `count`.
-fn transforms(reading: &Reading<'_>, prim: &Prim, count: usize, time: TimeCode) -> Option<Vec<DAffine3>> {
-    let vectors = |name: &str, at| reading.value_of::<Vec<Vec3f>>(&prim.attribute(name), at).filter(|v| !v.is_empty());
-    let fits = |len: usize, name: &str| {
-        if len != count {
-            reading.warn(prim.path(), format!("has {len} {name} for {count} instances; they are left out"));
-        }
-        len == count
-    };
-    let flow = Flow::of(reading, prim, "positions", "velocities", count, time);
-    let positions = vectors("positions", flow.as_ref().map_or(time, |flow| flow.from)).filter(|p| p.len() == count)?;
-    let accelerations = flow.as_ref().and_then(|flow| vectors("accelerations", flow.from)).filter(|a| a.len() == count);
-    let spin = ["orientationsf", "orientations"].into_iter().find_map(|name| {
-        let flow = Flow::of(reading, prim, name, "angularVelocities", count, time);
-        let at = flow.as_ref().map_or(time, |flow| flow.from);
-        let turns = turns(reading, prim, name, at)?;
-        Some((turns, flow, name))
-    });
-    let spin = spin.filter(|(turns, _, name)| fits(turns.len(), name));
-    let scales = vectors("scales", time).filter(|scales| fits(scales.len(), "scales"));
-    let place = |i: usize| {
-        let mut position = vector(positions[i]);
-        if let Some(flow) = &flow {
-            let gained = accelerations.as_ref().map_or(DVec3::ZERO, |a| 0.5 * flow.seconds * vector(a[i]));
-            position += flow.seconds * (vector(flow.rates[i]) + gained);
-        }
-        let turn = spin.as_ref().map_or(DMat3::IDENTITY, |(turns, flow, _)| match flow {
-            Some(flow) => {
-                let angles = flow.seconds * DEGREE * vector(flow.rates[i]);
-                DMat3::from_quat(DQuat::from_scaled_axis(angles)) * turns[i]
-            }
-            None => turns[i],
+/// What places the instances within the instancer, as UsdGeomPointInstancer's
+/// ComputeInstanceTransformsAtTimes has it without the prototypes' own transforms: by velocities from the last
+/// sample on, or, where there are none, by the values of each time.
+struct Layout<'a> {
+    reading: &'a Reading<'a>,
+    prim: &'a Prim,
+    places: Places,
+    flow: Option<Flow>,
+    spin: Option<Flow>,
+    /// The attribute of the orientations.
+    turned_by: Option<&'static str>,
+}
+
+/// Places of all instances; scales and turns where there are any.
+#[derive(Clone)]
+struct Places {
+    positions: Vec<Vec3f>,
+    scales: Option<Vec<Vec3f>>,
+    turns: Option<Vec<DMat3>>,
+}
+
+impl<'a> Layout<'a> {
+    /// That of `count` instances; `None` where there are positions for another number of them.
+    fn of(reading: &'a Reading<'a>, prim: &'a Prim, count: usize) -> Option<Self> {
+        let turned_by = ["orientationsf", "orientations"].into_iter().find(|name| {
+            let at = flow::last_sample(&prim.attribute(*name), reading.time);
+            turns(reading, prim, name, at).is_some()
         });
-        let scale = scales.as_ref().map_or(DVec3::ONE, |scales| vector(scales[i]));
-        DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(scale), position)
-    };
-    Some((0..count).map(place).collect())
+        let flow = Flow::of(reading, prim, "positions", "velocities", Some("accelerations"), count);
+        let spin = turned_by.and_then(|name| Flow::of(reading, prim, name, "angularVelocities", None, count));
+        let fits = |len: usize, name: &str| {
+            if len != count {
+                reading.warn(prim.path(), format!("has {len} {name} for {count} instances; they are left out"));
+            }
+            len == count
+        };
+        // Between samples where nothing flows; the base that times of the shutter fall back to.
+        let is_still = flow.is_none() && spin.is_none();
+        let at = |name: &str| {
+            if is_still { reading.time } else { flow::last_sample(&prim.attribute(name), reading.time) }
+        };
+        let positions = vectors(reading, prim, "positions", at("positions")).filter(|p| p.len() == count)?;
+        let scales = vectors(reading, prim, "scales", at("scales")).filter(|scales| fits(scales.len(), "scales"));
+        let turned_by = turned_by.filter(|name| {
+            let turns = turns(reading, prim, name, at(name));
+            turns.is_some_and(|turns| fits(turns.len(), name))
+        });
+        let turns = turned_by.and_then(|name| turns(reading, prim, name, at(name)));
+        let spin = spin.filter(|_| turns.is_some());
+        Some(Self { reading, prim, places: Places { positions, scales, turns }, flow, spin, turned_by })
+    }
+
+    fn at(&self, time: TimeCode) -> Vec<DAffine3> {
+        if self.flow.is_some() || self.spin.is_some() || time == self.reading.time {
+            return self.placed(&self.places, time);
+        }
+        let Self { reading, prim, places, .. } = self;
+        let count = places.positions.len();
+        let vectors = |name: &str| vectors(reading, prim, name, time).filter(|values| values.len() == count);
+        let turned = |name| turns(reading, prim, name, time).filter(|values| values.len() == count);
+        let now = Places {
+            positions: vectors("positions").unwrap_or_else(|| places.positions.clone()),
+            scales: vectors("scales").or_else(|| places.scales.clone()),
+            turns: self.turned_by.and_then(turned).or_else(|| places.turns.clone()),
+        };
+        self.placed(&now, time)
+    }
+
+    fn placed(&self, places: &Places, time: TimeCode) -> Vec<DAffine3> {
+        let Places { positions, scales, turns } = places;
+        let place = |i: usize| {
+            let moved = self.flow.as_ref().map_or(DVec3::ZERO, |flow| flow.change(i, time));
+            let turned = self.spin.as_ref().map(|spin| DEGREE * spin.change(i, time));
+            let turn = match (turns, turned) {
+                (Some(turns), Some(angles)) => DMat3::from_quat(DQuat::from_scaled_axis(angles)) * turns[i],
+                (Some(turns), None) => turns[i],
+                _ => DMat3::IDENTITY,
+            };
+            let scale = scales.as_ref().map_or(DVec3::ONE, |scales| vector(scales[i]));
+            DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(scale), vector(positions[i]) + moved)
+        };
+        (0..positions.len()).map(place).collect()
+    }
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// How an array changes from its last sample on.
-struct Flow {
-    /// Time of that sample.
-    from: TimeCode,
-    /// Seconds since then.
-    seconds: f64,
-    /// Change per second.
-    rates: Vec<Vec3f>,
-}
-
-impl Flow {
-    /// That of `array` by the velocities `rates`, which count where both have a sample at the same time.
-    fn of(reading: &Reading<'_>, prim: &Prim, array: &str, rates: &str, count: usize, time: TimeCode) -> Option<Self> {
-        let before = |name: &str| prim.attribute(name).bracketing_time_samples(time).ok().flatten().map(|(t, _)| t);
-        let from = before(rates)?;
-        if before(array) != Some(from) {
-            return None;
-        }
-        let rates: Vec<Vec3f> = reading.value_of(&prim.attribute(rates), TimeCode::new(from))?;
-        if rates.len() != count {
-            return None;
-        }
-        let seconds = (time.value() - from) / reading.stage.time_codes_per_second();
-        seconds.is_finite().then_some(Self { from: TimeCode::new(from), seconds, rates })
-    }
+/// The vectors of attribute `name`; `None` where there are none.
+fn vectors(reading: &Reading<'_>, prim: &Prim, name: &str, time: TimeCode) -> Option<Vec<Vec3f>> {
+    reading.value_of::<Vec<Vec3f>>(&prim.attribute(name), time).filter(|values| !values.is_empty())
 }
 
 /// The orientations `name`, of half or single precision, as matrices.
@@ -240,11 +263,7 @@ pub(super) fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
 fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
     let mut off: HashSet<i64> =
         reading.value::<Vec<i64>>(prim, "invisibleIds").unwrap_or_default().into_iter().collect();
-    match prim.get_metadata::<sdf::Value>("inactiveIds") {
-        Ok(Some(sdf::Value::Int64ListOp(inactive))) => off.extend(inactive.flatten()),
-        Ok(Some(sdf::Value::Int64Vec(inactive))) => off.extend(inactive),
-        _ => {}
-    }
+    off.extend(layer::inactive_ids(&reading.stage, prim));
     if off.is_empty() {
         return None;
     }
@@ -257,8 +276,4 @@ fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
     });
     let seen = |i: usize| !off.contains(&ids.as_ref().map_or(i as i64, |ids| ids[i]));
     Some((0..count).map(seen).collect())
-}
-
-fn vector(v: Vec3f) -> DVec3 {
-    DVec3::new(v.x.into(), v.y.into(), v.z.into())
 }

@@ -7,11 +7,11 @@ use openusd::sdf::Path;
 
 use super::gather::{Found, Haul};
 use super::images::Images;
-use super::inherit::{Clock, moving};
+use super::inherit::moving;
 use super::light::{Profiles, ShapeLight};
 use super::material::Materials;
 use super::stage::Reading;
-use super::walk::{Placed, Walk};
+use super::walk::Placed;
 use super::{camera, crew, instances, light, render, shapes, stamp, units, variants};
 use crate::desc::{RenderDesc, SceneDesc};
 use crate::error::Result;
@@ -61,10 +61,7 @@ fn gather(reading: &Reading<'_>) -> Haul {
     let Some(shutter) = shutter(reading, &haul) else { return haul };
     reading.shutter.set(Some(shutter));
     reading.crew.borrow_mut().clear();
-    let mut walk = Walk::new(Clock::noting(reading));
-    walk.stage();
-    let clock = walk.clock.moving(shutter).unwrap_or_else(|| Clock::still(reading));
-    crew::by_one(clock, aside)
+    crew::gather(reading, aside)
 }
 
 /// From when to when a camera's shutter is open, in time codes after the frame.

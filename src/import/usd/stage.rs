@@ -8,15 +8,17 @@ use std::sync::mpsc;
 
 use openusd::sdf::{self, FromValue, ValueKind};
 use openusd::tf::Token;
-use openusd::usd::{Attribute, Prim, Stage, TimeCode};
+use openusd::usd::{Attribute, InterpolationType, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
+use super::clips::Declared;
 use super::files::Files;
+use super::layer::{Kept, Met, Site};
 use super::units::Units;
 use super::{cycles, diagnostics, render, skel, variants};
 use crate::error::{Error, Place, Result, Warnings};
-use crate::import::Purpose;
+use crate::import::{Interpolation, Purpose};
 use crate::math::DAffine3;
 
 /// A composed stage, the time at which it is read, and how its space lies in ours.
@@ -43,6 +45,9 @@ pub(super) struct Reading<'a> {
     pub binding_purposes: Vec<Token>,
     /// How many of its layers were searched for cycles.
     pub layers: Cell<usize>,
+    /// True where a layer has value clips.
+    pub clipped: Cell<bool>,
+    pub declared: RefCell<Declared>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
     /// Whether there is a material of a MaterialX document at a path without prim.
@@ -52,6 +57,9 @@ pub(super) struct Reading<'a> {
     authored: RefCell<Authored>,
     /// Threads that hold what they opened until this is gone: to let go of it would cost time that is needed.
     pub crew: RefCell<Vec<mpsc::Sender<()>>>,
+    /// What was met in layers on their way.
+    pub met: Rc<RefCell<Met>>,
+    kept: Kept,
 }
 
 impl<'a> Reading<'a> {
@@ -65,7 +73,13 @@ impl<'a> Reading<'a> {
             return Err(Error::io(path, "can't read", source));
         }
         let (files, schemas) = Files::open(path);
-        let opened = Stage::builder().resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
+        let met = files.met();
+        let interpolation = match options.interpolation {
+            Interpolation::Held => InterpolationType::Held,
+            Interpolation::Linear => InterpolationType::Linear,
+        };
+        let builder = Stage::builder().interpolation_type(interpolation);
+        let opened = builder.resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
         let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);
@@ -86,11 +100,15 @@ impl<'a> Reading<'a> {
             purposes: Vec::new(),
             binding_purposes: Vec::new(),
             layers: Cell::new(0),
+            clipped: Cell::new(false),
+            declared: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
             skeletons: skel::Skeletons::default(),
             authored: RefCell::default(),
             crew: RefCell::default(),
+            met,
+            kept: Kept::default(),
         };
         cycles::mend(&reading);
         variants::select(&reading.stage, &options.variants, &reading.place)?;
@@ -115,6 +133,9 @@ impl<'a> Reading<'a> {
         diagnostics::tell(self);
         for (path, what) in self.authored.borrow_mut().unknown.drain(..) {
             self.warn(&path, what);
+        }
+        for (layer, path, what) in self.met.borrow_mut().told.drain(..) {
+            self.warnings.borrow_mut().push(&Place::file(layer).at(path), what);
         }
     }
 
@@ -158,6 +179,10 @@ impl<'a> Reading<'a> {
         T: FromValue,
         T::Error: Into<openusd::Error>,
     {
+        if let Some(spline) = self.spline(attribute) {
+            let value = spline.at(time).filter(|value| T::accepts_kind(ValueKind::from(value)))?;
+            return T::try_from(value).ok();
+        }
         match attribute.get_at::<T>(time) {
             Ok(Some(value)) => Some(value),
             Ok(None) => self.held(attribute, time),
@@ -166,6 +191,12 @@ impl<'a> Reading<'a> {
                 None
             }
         }
+    }
+
+    /// The curve that gives `attribute` its values.
+    pub fn spline(&self, attribute: &Attribute) -> Option<Rc<Site>> {
+        // Few stages have any, and others are not to be searched.
+        if self.met.borrow().splines { self.kept.spline(&self.stage, attribute) } else { None }
     }
 
     /// The sample before `time` where a block follows it: OpenUSD holds that value up to the block, the
@@ -177,9 +208,6 @@ impl<'a> Reading<'a> {
     {
         if let Ok(Some((before, after))) = attribute.bracketing_time_samples(time) {
             return if before < after { attribute.get_at::<T>(TimeCode::new(before)).ok().flatten() } else { None };
-        }
-        if matches!(attribute.has_authored_metadata("spline"), Ok(true)) {
-            self.warn(attribute.path(), "is animated by a spline, which can't be evaluated; taken for not authored");
         }
         None
     }

@@ -10,14 +10,13 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::Primvar;
 
 use super::bindings::{Bindings, Scope};
-use super::cycles;
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
 use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{draw_mode, instancer, prototypes, schemas, skel, stamp};
+use super::{clips, cycles, draw_mode, instancer, prototypes, schemas, skel, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -187,6 +186,9 @@ impl<'r, 'a> Walk<'r, 'a> {
         };
         if !defined || !flag(prim, FieldKey::Active).unwrap_or(true) {
             return None;
+        }
+        if reading.clipped.get() {
+            clips::declare(reading, prim);
         }
         let kind = self.kinds.of(reading, prim);
         if kind.role == Role::Aside {

@@ -1,11 +1,14 @@
 //! Local transforms: the ordered operations of UsdGeomXformable.
 
-use openusd::gf::Matrix4d;
+use std::rc::Rc;
+
+use openusd::gf::{Matrix4d, Rotation, Vec3d};
 use openusd::sdf;
 use openusd::tf::Token;
 use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::XformOp;
 
+use super::layer::Site;
 use super::stage::Reading;
 use crate::math::{DAffine3, DMat3, DVec3};
 
@@ -14,9 +17,48 @@ use crate::math::{DAffine3, DMat3, DVec3};
 #[derive(Clone)]
 pub(super) struct Xform {
     prim: Prim,
-    ops: Vec<XformOp>,
+    ops: Vec<Op>,
     /// True where it starts from the root, not from the prim's parent.
     pub resets: bool,
+}
+
+/// One operation.
+#[derive(Clone)]
+struct Op {
+    op: XformOp,
+    /// The curve that its number follows.
+    spline: Option<Rc<Site>>,
+}
+
+impl Op {
+    fn at(&self, time: TimeCode) -> Result<Matrix4d, openusd_schemas::SchemaError> {
+        if let Some(spline) = &self.spline {
+            let number = spline.at(time).and_then(|value| value.cast::<f64>().ok());
+            return Ok(number.map_or(Matrix4d::IDENTITY, |number| about_an_axis(&self.op, number)));
+        }
+        match self.op.op_transform(time) {
+            // Also that of an operation without value.
+            Ok(matrix) if matrix == Matrix4d::IDENTITY => self.op.op_transform(held(self.op.attribute(), time)),
+            other => other,
+        }
+    }
+}
+
+/// What an operation along one axis does with `number`; those of several take no curves.
+fn about_an_axis(op: &XformOp, number: f64) -> Matrix4d {
+    let kind = op.name().split(':').nth(1).unwrap_or_default().to_string();
+    let Some(axis) = ["X", "Y", "Z"].iter().position(|axis| kind.ends_with(axis)) else { return Matrix4d::IDENTITY };
+    let along = |rest: f64, value: f64| std::array::from_fn(|i| if i == axis { value } else { rest });
+    let signed = if op.is_inverse_op() { -number } else { number };
+    match &kind[..kind.len() - 1] {
+        "translate" => Matrix4d::translation(along(0.0, signed)),
+        "scale" => Matrix4d::scale(along(1.0, if op.is_inverse_op() { 1.0 / number } else { number })),
+        "rotate" => {
+            let [x, y, z] = along(0.0, 1.0);
+            Matrix4d::from_quat(Rotation::new(Vec3d { x, y, z }, signed).quat())
+        }
+        _ => Matrix4d::IDENTITY,
+    }
 }
 
 impl Xform {
@@ -41,7 +83,9 @@ impl Xform {
             };
             // As in OpenUSD, an operation without its attribute does nothing.
             if names.contains(&name) {
-                xform.ops.push(XformOp::new(&prim.attribute(name), inverse));
+                let attribute = prim.attribute(name);
+                let spline = reading.spline(&attribute);
+                xform.ops.push(Op { op: XformOp::new(&attribute, inverse), spline });
             }
         }
         Some(xform)
@@ -53,16 +97,12 @@ impl Xform {
         let mut ops = self.ops.iter().peekable();
         while let Some(op) = ops.next() {
             // A pivot that is undone at once: one that is singular would else spoil everything.
-            let undone = |next: &&XformOp| next.name() == op.name() && next.is_inverse_op() != op.is_inverse_op();
+            let undone =
+                |next: &&Op| next.op.name() == op.op.name() && next.op.is_inverse_op() != op.op.is_inverse_op();
             if ops.next_if(undone).is_some() {
                 continue;
             }
-            let transform = match op.op_transform(time) {
-                // Also that of an operation without value.
-                Ok(matrix) if matrix == Matrix4d::IDENTITY => op.op_transform(held(op.attribute(), time)),
-                other => other,
-            };
-            match transform {
+            match op.at(time) {
                 Ok(matrix) => local *= affine(&matrix.0),
                 Err(error) => reading.warn(self.prim.path(), format!("{error}; that is left out")),
             }
@@ -72,13 +112,20 @@ impl Xform {
 
     /// True where it may differ between times.
     pub fn varies(&self) -> bool {
-        self.ops.iter().any(|op| op.might_be_time_varying().unwrap_or(false))
+        self.ops.iter().any(|op| match &op.spline {
+            Some(spline) => spline.varies(),
+            None => op.op.might_be_time_varying().unwrap_or(false),
+        })
     }
 
     /// Times of its samples from `open` to `close`.
     pub fn samples(&self, open: f64, close: f64) -> Vec<f64> {
-        let attributes: Vec<Attribute> = self.ops.iter().map(|op| op.attribute().clone()).collect();
-        Attribute::unioned_time_samples_in_interval(&attributes, open..=close).unwrap_or_default()
+        let (curved, sampled): (Vec<&Op>, Vec<&Op>) = self.ops.iter().partition(|op| op.spline.is_some());
+        let attributes: Vec<Attribute> = sampled.iter().map(|op| op.op.attribute().clone()).collect();
+        let mut times = Attribute::unioned_time_samples_in_interval(&attributes, open..=close).unwrap_or_default();
+        let splines = curved.iter().filter_map(|op| op.spline.as_ref()).filter(|spline| spline.varies());
+        times.extend(splines.flat_map(|spline| spline.samples(open, close)));
+        times
     }
 }
 

@@ -59,7 +59,8 @@ impl Builder<'_, '_> {
             self.reading.warn(prim.path(), format!("its network is deeper than {DEEPEST} nodes; cut off here"));
             return None;
         }
-        let id = raw(self.reading, &prim.attribute("info:id")).and_then(text_of).unwrap_or_default();
+        let id = prim.attribute("info:id");
+        let id = self.reading.value_of::<sdf::Value>(&id, self.reading.time).and_then(text_of).unwrap_or_default();
         let (name, kind) = category(&id);
         let node = Node {
             category: name.to_string(),
@@ -97,7 +98,7 @@ impl Builder<'_, '_> {
 
 /// The value of an attribute.
 pub(super) fn value(reading: &Reading<'_>, attribute: &Attribute) -> Option<Value> {
-    let value = raw(reading, attribute)?;
+    let value = reading.value_of::<sdf::Value>(attribute, reading.time)?;
     if let sdf::Value::AssetPath(asset) = value {
         let layer = attribute.property_stack().ok().and_then(|stack| stack.into_iter().next());
         return Some(Value::File(File::find(&asset, layer.as_ref().map(|site| site.layer.as_str()))));
@@ -105,16 +106,6 @@ pub(super) fn value(reading: &Reading<'_>, attribute: &Attribute) -> Option<Valu
     match numbers_of(&value) {
         Some((numbers, count)) => Some(Value::Numbers(numbers, count)),
         None => text_of(value).map(Value::Text),
-    }
-}
-
-fn raw(reading: &Reading<'_>, attribute: &Attribute) -> Option<sdf::Value> {
-    match attribute.get_at::<sdf::Value>(reading.time) {
-        Ok(value) => value,
-        Err(error) => {
-            reading.warn(attribute.path(), format!("{error}; taken for not authored"));
-            None
-        }
     }
 }
 

@@ -123,7 +123,14 @@ pub(super) fn points(reading: &Reading<'_>, prim: &Prim) -> Option<Vec<[f32; 3]>
         reading.warn(prim.path(), "it has no points; it is left out");
         return None;
     }
-    points
+    let points = points?;
+    // Few prims have any, and others are not to be searched.
+    if reading.names(prim).iter().any(|name| name.as_str() == "velocities")
+        && let Some(flowing) = motion::flowing(reading, prim, points.len())
+    {
+        return Some(flowing.at(reading.time));
+    }
+    Some(points)
 }
 
 pub(super) fn is_left_handed(reading: &Reading<'_>, prim: &Prim) -> bool {

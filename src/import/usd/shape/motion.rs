@@ -3,15 +3,38 @@
 use openusd::sdf::Value;
 use openusd::usd::{Prim, TimeCode};
 
+use super::super::flow::Flow;
 use super::super::skel::Deformer;
 use super::super::stage::Reading;
 use super::values::triples;
 use crate::desc::Motion;
+use crate::math::DVec3;
+
+/// Where the points of `prim` are at the frame, which their attribute `points` has at it: moved on by velocities
+/// from the last sample, as UsdGeomPointBased::ComputePointsAtTime does. `None` where there are no velocities.
+pub(super) fn flowing(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Flowing> {
+    let flow = Flow::of(reading, prim, "points", "velocities", Some("accelerations"), count)?;
+    let points = reading.value_of::<Value>(&prim.attribute("points"), flow.from).and_then(triples)?;
+    (points.len() == count).then_some(Flowing { points, flow })
+}
+
+/// Points that velocities move.
+pub(super) struct Flowing {
+    points: Vec<[f32; 3]>,
+    flow: Flow,
+}
+
+impl Flowing {
+    pub fn at(&self, time: TimeCode) -> Vec<[f32; 3]> {
+        let moved = |(i, point): (usize, &[f32; 3])| DVec3::from(point.map(f64::from)) + self.flow.change(i, time);
+        self.points.iter().enumerate().map(moved).map(|point| point.as_vec3().into()).collect()
+    }
+}
 
 /// The points of `prim`, of which there are `count`, at the ends of `shutter` and at the samples between
-/// them; the interval is in frames after the one that is read. Velocities come before samples, as in
-/// UsdGeomPointBased::ComputePointsAtTime. Empty for points that stand still, and where their number
-/// changes. What `deformer` deforms has no velocities: those are of the points as modelled.
+/// them; the interval is in frames after the one that is read. Velocities come before samples. Empty for
+/// points that stand still, and where their number changes. What `deformer` deforms has no velocities: those are
+/// of the points as modelled.
 pub(super) fn read(
     reading: &Reading<'_>,
     prim: &Prim,
@@ -21,33 +44,25 @@ pub(super) fn read(
 ) -> Vec<Motion<Vec<[f32; 3]>>> {
     let attribute = prim.attribute("points");
     let now = reading.time.value();
-    let read = |time: f64| {
-        let time = TimeCode::new(time);
-        let value = attribute.get_at::<Value>(time).ok().flatten();
-        let points = value.and_then(triples).filter(|points| points.len() == count)?;
-        Some(match deformer {
-            Some(deformer) => deformer.points(points, time),
-            None => points,
-        })
-    };
-    if deformer.is_none()
-        && let Some(velocities) = reading.value::<Value>(prim, "velocities").and_then(triples)
-        && velocities.len() == count
-        && let Some(points) = read(now)
-    {
-        let seconds = 1.0 / reading.stage.time_codes_per_second();
-        let at = |frame: f64| {
-            let dt = (frame * seconds) as f32;
-            let moved = points.iter().zip(&velocities).map(|(p, v)| std::array::from_fn(|i| p[i] + dt * v[i]));
-            Motion { time: frame, value: moved.collect() }
-        };
-        return shutter.map(at).into();
-    }
     let [open, close] = shutter.map(|frame| now + frame);
     let deforms = deformer.and_then(|deformer| deformer.samples(open, close));
     if deforms.is_none() && !attribute.value_might_be_time_varying().unwrap_or(false) {
         return Vec::new();
     }
+    if deformer.is_none()
+        && let Some(flowing) = flowing(reading, prim, count)
+    {
+        return shutter.map(|time| Motion { time, value: flowing.at(TimeCode::new(now + time)) }).into();
+    }
+    let read = |time: f64| {
+        let time = TimeCode::new(time);
+        let points = reading.value_of::<Value>(&attribute, time).and_then(triples);
+        let points = points.filter(|points| points.len() == count)?;
+        Some(match deformer {
+            Some(deformer) => deformer.points(points, time),
+            None => points,
+        })
+    };
     let mut times = attribute.time_samples_in_interval(open..=close).unwrap_or_default();
     times.extend(deforms.into_iter().flatten());
     times.extend([open, close]);

@@ -10,7 +10,7 @@ use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::Triangles;
 use super::primvar::{self, Channel, Counts, Primvars};
-use super::profile::{Axis, Solid};
+use super::profile::{Axis, CUBE, PLANE, Solid};
 use super::{Built, Wants};
 use crate::error::{Place, Warnings};
 use openusd_schemas::geom::Interpolation;
@@ -135,13 +135,52 @@ impl Primitive {
             Shape::Capsule { bottom, top, height } => Solid::capsule(bottom, top, height).along(axis),
             Shape::Plane { width, length } => Solid::plane(width, length, axis),
         };
-        // What has one value for the whole shape; others count faces and points that only Hydra knows.
-        let counts = Counts { faces: 1, joints: 1, points: 1, corners: 1 };
-        let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
-        channels.make_constant();
+        let mut channels = match shape {
+            Shape::Cube { .. } => at_corners(&CUBE, 8, primvars, wants, place, warnings),
+            Shape::Plane { .. } => at_corners(&PLANE, 4, primvars, wants, place, warnings),
+            // What has one value for the whole shape; others count faces and points that only Hydra knows.
+            _ => {
+                let counts = Counts { faces: 1, joints: 1, points: 1, corners: 1 };
+                Channels::new(primvars, &counts, wants, place, warnings)
+            }
+        };
+        if !matches!(shape, Shape::Cube { .. } | Shape::Plane { .. }) {
+            channels.make_constant();
+        }
         let mesh = solid_surface(solid, channels).finish(wants, place, warnings)?;
         Some(Built::Mesh(mesh))
     }
+}
+
+/// The values of a shape of `faces` with `points`, one for each of its faces' corners, each of which is a point
+/// of the solid.
+fn at_corners(
+    faces: &[[u32; 4]],
+    points: usize,
+    primvars: Primvars,
+    wants: &Wants,
+    place: &Place,
+    warnings: &mut Warnings,
+) -> Channels {
+    let counts = Counts { faces: faces.len(), joints: points, points, corners: 4 * faces.len() };
+    let mut channels = Channels::new(primvars, &counts, wants, place, warnings);
+    channels.uvs.iter_mut().for_each(|(_, channel)| *channel = by_corner(channel, faces));
+    channels.color = channels.color.as_ref().map(|channel| by_corner(channel, faces));
+    channels.opacity = channels.opacity.as_ref().map(|channel| by_corner(channel, faces));
+    channels
+}
+
+fn by_corner<const N: usize>(channel: &Channel<N>, faces: &[[u32; 4]]) -> Channel<N> {
+    let value = |(corner, &point): (usize, &u32)| {
+        channel.at(match channel.interpolation {
+            Interpolation::Constant => 0,
+            Interpolation::Uniform => corner / 4,
+            Interpolation::Varying | Interpolation::Vertex => point as usize,
+            Interpolation::FaceVarying => corner,
+        })
+    };
+    let values = faces.as_flattened().iter().enumerate().map(value).collect();
+    Channel { interpolation: Interpolation::Vertex, values, indices: None }
 }
 
 /// The surface of a solid.
@@ -150,4 +189,84 @@ pub(super) fn solid_surface(solid: Solid, mut channels: Channels) -> Surface {
     channels.normals = Some(Channel { interpolation: Interpolation::Vertex, values: normals, indices: None });
     let triangles = Triangles { points: triangles, corners: None, faces: None };
     Surface { points, triangles, channels, slots: None, motion: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::built;
+    use super::*;
+    use crate::desc::{Attribute, MeshDesc};
+    use crate::math::Vec3;
+
+    fn shape(kind: &str, primvar: &str) -> (MeshDesc, Vec<String>) {
+        let wants = Wants { display_color: true, uv_sets: vec!["st".into()], ..Wants::default() };
+        let (built, told) = built(&format!("def {kind} \"S\" {{ {primvar} }}"), "/S", &wants, 0);
+        (built.unwrap().into_mesh(), told)
+    }
+
+    /// Colours of as many greys as there are elements.
+    fn greys(count: usize, interpolation: &str) -> String {
+        let colors: Vec<String> = (0..count).map(|i| format!("({i}, {i}, {i})")).collect();
+        format!("color3f[] primvars:displayColor = [{}] (interpolation = \"{interpolation}\")", colors.join(", "))
+    }
+
+    /// At each corner of each triangle: where it is, which way it faces, and its grey.
+    fn corners(mesh: &MeshDesc) -> Vec<(Vec3, Vec3, usize)> {
+        let Some(Attribute::Point(colors)) = &mesh.colors else { panic!("no colours at points") };
+        let corner = |triangle: [u32; 3], i: u32| {
+            let [a, b, c] = triangle.map(|i| Vec3::from(mesh.points[i as usize]));
+            let normal = (b - a).cross(c - a).normalize();
+            (Vec3::from(mesh.points[i as usize]), normal, colors[i as usize][0] as usize)
+        };
+        mesh.triangles.iter().flat_map(|&triangle| triangle.map(|i| corner(triangle, i))).collect()
+    }
+
+    /// The faces and points of UsdImaging's cube (GeomUtilCuboidMeshGenerator).
+    #[test]
+    fn a_cube_has_the_colors_of_its_faces_points_and_corners() {
+        let faces = [Vec3::Z, -Vec3::Z, Vec3::Y, -Vec3::Y, Vec3::X, -Vec3::X];
+        let points =
+            [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (-1, -1, -1), (-1, 1, -1), (1, 1, -1), (1, -1, -1)];
+        let points = points.map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32));
+        let (mesh, told) = shape("Cube", &greys(6, "uniform"));
+        assert_eq!(told, [""; 0]);
+        for (_, normal, grey) in corners(&mesh) {
+            assert_eq!(normal, faces[grey]);
+        }
+        for interpolation in ["vertex", "varying"] {
+            let (mesh, told) = shape("Cube", &greys(8, interpolation));
+            assert_eq!(told, [""; 0]);
+            for (point, _, grey) in corners(&mesh) {
+                assert_eq!(point, points[grey]);
+            }
+        }
+        let (mesh, told) = shape("Cube", &greys(24, "faceVarying"));
+        assert_eq!(told, [""; 0]);
+        for (point, normal, grey) in corners(&mesh) {
+            assert_eq!((point, normal), (points[CUBE[grey / 4][grey % 4] as usize], faces[grey / 4]));
+        }
+    }
+
+    #[test]
+    fn a_plane_has_four_points() {
+        for (axis, normal, first) in [
+            ("X", Vec3::X, Vec3::new(0.0, 1.0, 1.0)),
+            ("Y", Vec3::Y, Vec3::new(-1.0, 0.0, 1.0)),
+            ("Z", Vec3::Z, Vec3::new(1.0, 1.0, 0.0)),
+        ] {
+            let (mesh, told) = shape("Plane", &format!("uniform token axis = \"{axis}\"\n{}", greys(4, "vertex")));
+            assert_eq!(told, [""; 0]);
+            for (point, facing, grey) in corners(&mesh) {
+                assert_eq!(facing, normal);
+                assert!(grey != 0 || point == first, "{axis}: {point}");
+            }
+        }
+    }
+
+    /// Hydra's spheres have a number of faces that nothing but Hydra tells.
+    #[test]
+    fn what_other_shapes_can_t_show_is_told() {
+        let (_, told) = shape("Sphere", &greys(100, "uniform"));
+        assert!(told.iter().any(|told| told.contains("displayColor has 100 values")), "{told:?}");
+    }
 }

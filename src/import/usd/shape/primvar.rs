@@ -154,13 +154,7 @@ pub(super) fn array<const N: usize>(
     convert: Convert<N>,
     fallback: Interpolation,
 ) -> Option<Data<N>> {
-    let value = match attribute.get_at::<Value>(reading.time) {
-        Ok(value) => value?,
-        Err(error) => {
-            reading.warn(attribute.path(), format!("{error}; taken for not authored"));
-            return None;
-        }
-    };
+    let value = reading.value_of::<Value>(attribute, reading.time)?;
     let kind = ValueKind::from(&value);
     let Some(values) = convert(value) else {
         reading.warn(attribute.path(), format!("a value of type {kind} is not what is expected here; it is left out"));

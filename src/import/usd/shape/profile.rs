@@ -9,6 +9,12 @@ const AROUND: u32 = 96;
 /// Segments along a quarter of a meridian.
 const QUARTER: f64 = AROUND as f64 / 4.0;
 
+/// The faces of a cube by its eight points, of a plane by its four, as UsdImaging's meshes have them: that is
+/// what the values of `uniform`, `vertex` and `faceVarying` primvars count.
+pub(super) const CUBE: [[u32; 4]; 6] =
+    [[0, 1, 2, 3], [4, 5, 6, 7], [0, 6, 5, 1], [4, 7, 3, 2], [0, 3, 7, 6], [4, 2, 1, 5]];
+pub(super) const PLANE: [[u32; 4]; 1] = [[0, 1, 2, 3]];
+
 /// A mesh with smooth normals, about the z axis.
 #[derive(Default)]
 pub(super) struct Solid {
@@ -112,39 +118,50 @@ impl Solid {
         solid
     }
 
+    /// Its faces are [`CUBE`]; each has its own points, in the order of the face's corners.
     pub fn cube(size: f64) -> Self {
+        let corner = |[x, y, z]: [f64; 3]| DVec3::new(x, y, z) * (size / 2.0);
+        let points = [
+            [1.0, 1.0, 1.0],
+            [-1.0, 1.0, 1.0],
+            [-1.0, -1.0, 1.0],
+            [1.0, -1.0, 1.0],
+            [-1.0, -1.0, -1.0],
+            [-1.0, 1.0, -1.0],
+            [1.0, 1.0, -1.0],
+            [1.0, -1.0, -1.0],
+        ];
         let mut solid = Self::default();
-        for axis in 0..3 {
-            for side in [-1.0, 1.0] {
-                let mut n = [0.0; 3];
-                n[axis] = side;
-                let n = DVec3::from(n);
-                let u = DVec3::from(std::array::from_fn(|i| if i == (axis + 1) % 3 { 1.0 } else { 0.0 }));
-                solid.quad(n, u, n.cross(u), size / 2.0, size / 2.0, n * size / 2.0);
-            }
-        }
+        CUBE.iter().for_each(|face| solid.quad(face.map(|i| corner(points[i as usize]))));
         solid
     }
 
     /// A rectangle that faces `axis`. Its width is along x, its length along y, or what is left of these.
     pub fn plane(width: f64, length: f64, axis: Axis) -> Self {
-        let mut solid = Self::default();
         let (w, l) = (width / 2.0, length / 2.0);
-        match axis {
-            Axis::X => solid.quad(DVec3::X, DVec3::Y, DVec3::Z, l, w, DVec3::ZERO),
-            Axis::Y => solid.quad(DVec3::Y, DVec3::Z, DVec3::X, l, w, DVec3::ZERO),
-            Axis::Z => solid.quad(DVec3::Z, DVec3::X, DVec3::Y, w, l, DVec3::ZERO),
-        }
+        // Corner by corner as UsdImaging has them.
+        let corner = |[u, v]: [f64; 2]| match axis {
+            Axis::X => DVec3::new(0.0, v * l, u * w),
+            Axis::Y => DVec3::new(-u * w, 0.0, v * l),
+            Axis::Z => DVec3::new(u * w, v * l, 0.0),
+        };
+        let corners = match axis {
+            Axis::X => [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]],
+            Axis::Y => [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]],
+            Axis::Z => [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]],
+        };
+        let mut solid = Self::default();
+        solid.quad(corners.map(corner));
         solid
     }
 
-    /// Counter-clockwise about `n` = `u` × `v`.
-    fn quad(&mut self, n: DVec3, u: DVec3, v: DVec3, half_u: f64, half_v: f64, center: DVec3) {
+    /// Adds a rectangle with points of its own, counter-clockwise.
+    fn quad(&mut self, corners: [DVec3; 4]) {
         let first = self.points.len() as u32;
-        for (a, b) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-            self.points.push((center + u * (a * half_u) + v * (b * half_v)).as_vec3().into());
-            self.normals.push(n.as_vec3().into());
-        }
+        let [a, b, c, _] = corners;
+        let n = (b - a).cross(c - b).normalize_or_zero();
+        self.points.extend(corners.map(|corner| -> [f32; 3] { corner.as_vec3().into() }));
+        self.normals.extend([n.as_vec3().to_array(); 4]);
         self.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t: [u32; 3]| t.map(|i| first + i)));
     }
 
