@@ -78,7 +78,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, &mut warnings);
+    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, cache, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
@@ -117,6 +117,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         effects,
         lights,
         background_visible,
+        follows_camera: desc.dome_shaders.iter().any(|dome| graphs::follows_camera(&dome.graph, [dome.radiance])),
         film_transparent,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
@@ -131,8 +132,9 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
 }
 
 impl Scene {
-    /// Looks at the same scene through another camera, or at another size: nothing else is prepared again.
-    /// `render` says what part of a picture of `whole` pixels is wanted.
+    /// Looks at the same scene through another camera, or at another size: nothing else is prepared again, so that a
+    /// dome that [follows the camera](Scene::follows_camera) stays where it was. `render` says what part of a
+    /// picture of `whole` pixels is wanted.
     ///
     /// # Errors
     /// A camera or a part that makes no picture; the scene then stays as it was.

@@ -49,7 +49,8 @@ def test_f12_fills_every_pass(blender, tmp_path):
     "name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "falloff_linear", "world_image", "mesh_light",
              "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured", "points",
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
-             "sky_preetham", "holdout", "thin"]
+             "sky_preetham", "holdout", "thin", "hair", "hair_curves_bent",
+             "particle_fur", "particle_instances"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
     paths, _ = blender.run("side_by_side", name, tmp_path, 64, 48)
@@ -62,6 +63,21 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
         # The noise of the two means: that of differences between pixels, which edges make no smaller.
         noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
         assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise, (name, layer)
+
+
+def test_particle_hair_has_the_shape_of_cycles(blender, tmp_path):
+    """Taper, shape, closed tips, curls and children: where the hair is, whatever light falls on it."""
+    paths, _ = blender.run("side_by_side", "particle_hair", tmp_path, 64, 96)
+    cycles, ours = [read(path) for path in paths]
+    for layer, short, channels in (("Diffuse Color", "DiffCol", "RGB"), ("Depth", "Depth", "Z")):
+        for c in channels:
+            expected = cycles.get(f"ViewLayer.{layer}.{c}", cycles.get(f"ViewLayer.{short}.{c}"))
+            found = ours[f"ViewLayer.{layer}.{c}"]
+            # The straight pieces of a bend lie up to a twentieth of the radius inside of it.
+            noise = np.std(found - expected) / np.sqrt(expected.size)
+            assert abs(found.mean() - expected.mean()) <= 0.0005 * expected.mean() + 4.0 * noise, (layer, c)
+            # Pixel by pixel, too: within the noise of edges nearly everywhere.
+            assert np.mean(np.abs(found - expected) > 0.1 * expected.max()) < 0.05, (layer, c)
 
 
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):

@@ -1,10 +1,19 @@
 //! Hair curves and point clouds, from the arrays that Blender keeps them in.
 
+use super::smooth;
 use crate::desc::{RoundsDesc, Strand};
 use crate::error::{Error, Place, Result, Warnings};
 
-/// Strands of `positions` (three numbers each) and `radii`; `ends` are the points behind the last one of each
-/// strand, in order, and none for points that stand alone.
+/// Where strands end, and what they are between their points.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ends<'a> {
+    /// The points behind the last one of each strand, in order; none for points that stand alone.
+    pub points: &'a [u32],
+    /// Catmull-Rom splines, as Cycles has them; else straight.
+    pub smooth: bool,
+}
+
+/// Strands of `positions` (three numbers each) and `radii`.
 ///
 /// # Errors
 /// Arrays whose lengths don't fit together. Strands and points that are not finite are told and left out.
@@ -13,9 +22,10 @@ pub fn rounds(
     place: &Place,
     positions: &[f32],
     radii: &[f32],
-    ends: &[u32],
+    ends: Ends<'_>,
     warnings: &mut Warnings,
 ) -> Result<RoundsDesc> {
+    let Ends { points: ends, smooth } = ends;
     let (points, rest) = positions.as_chunks::<3>();
     let broken = |what: String| Error::invalid(place, format!("\"{name}\" {what}"));
     if !rest.is_empty() || radii.len() != points.len() {
@@ -46,8 +56,12 @@ pub fn rounds(
             left_out += 1;
             continue;
         }
-        desc.points.extend_from_slice(&points[range.clone()]);
-        desc.radii.extend(radii[range].iter().map(|radius| radius.max(0.0)));
+        if smooth {
+            smooth::flatten(&points[range.clone()], &radii[range], &mut desc.points, &mut desc.radii);
+        } else {
+            desc.points.extend_from_slice(&points[range.clone()]);
+            desc.radii.extend(radii[range].iter().map(|radius| radius.max(0.0)));
+        }
         if !ends.is_empty() {
             desc.strands.push(Strand { end: desc.points.len() as u32, closed: false });
         }
@@ -64,6 +78,7 @@ mod tests {
 
     fn made(positions: &[f32], radii: &[f32], ends: &[u32]) -> (Result<RoundsDesc>, usize) {
         let mut warnings = Warnings::new();
+        let ends = Ends { points: ends, smooth: false };
         let desc = rounds("Fur", &Place::default(), positions, radii, ends, &mut warnings);
         (desc, warnings.len())
     }

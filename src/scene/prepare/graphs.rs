@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::geometry::Geometry;
 use super::materials::Textures;
-use crate::desc::graph::{Graph, Op, Value, ValueId};
+use crate::desc::graph::{Graph, Leaf, Op, Space, Value, ValueId};
 use crate::desc::{self, InstanceDesc, MaterialDesc, MeshDesc, RoundsDesc, SceneDesc, TextureTransform};
 use crate::math::DVec3;
 use crate::scene::Material;
@@ -76,6 +76,19 @@ pub fn looked_up(graph: &Graph, values: impl IntoIterator<Item = ValueId>) -> Ve
         _ => None,
     });
     looked_up.collect()
+}
+
+/// True where one of `values` of a graph goes by the camera or by where in the picture something is seen.
+pub fn follows_camera(graph: &Graph, values: impl IntoIterator<Item = ValueId>) -> bool {
+    let needed = graph.needed(values);
+    graph.ops().iter().zip(needed).any(|(op, needed)| {
+        let follows = match op {
+            Op::Leaf(leaf) => matches!(leaf, Leaf::CameraPosition | Leaf::Window),
+            Op::Transform { from, to, .. } => [*from, *to].contains(&Space::Camera),
+            _ => false,
+        };
+        needed && follows
+    })
 }
 
 /// What the programs ask of the meshes and objects of `geometry`; nothing where there is none.
