@@ -101,8 +101,8 @@ impl Scene {
 
     /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the
     /// index behind its last point); points that stand alone where `ends` is empty. Between its points a strand is
-    /// straight, or a Catmull-Rom spline where `smooth`.
-    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false))]
+    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))].
+    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new()))]
     fn set_rounds(
         &self,
         key: u64,
@@ -111,11 +111,13 @@ impl Scene {
         radii: Floats<'_>,
         ends: PyReadonlyArray1<'_, u32>,
         smooth: bool,
+        uvs: Vec<Layer<'_>>,
     ) -> PyResult<()> {
         let ends = ends.as_slice().map_err(|_| contiguous())?;
         let (positions, radii) = (floats(&positions)?, floats(&radii)?);
         let ends = Ends { points: ends, smooth };
-        self.lock().set_rounds(key, name, positions, radii, ends).map_err(|error| exception(&error))
+        let uvs = layers(&uvs)?;
+        self.lock().set_rounds(key, name, positions, radii, ends, &uvs).map_err(|error| exception(&error))
     }
 
     /// Forgets the shape `key`.

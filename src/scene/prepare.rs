@@ -92,7 +92,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         let groups = passes.groups();
         let (materials, textures) = (&materials, &textures);
         let shared = Shared { materials, domes: &domes, textures, asked: &asked, camera, origin };
-        let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, &mut warnings);
+        let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, cache, &mut warnings);
         tell_of_darkness(&desc, &lights, materials, &mut warnings);
         lights
     } else {

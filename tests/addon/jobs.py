@@ -166,6 +166,36 @@ def export(name, path, *options):
     return [listener.document, _left()]
 
 
+def _as_principled(tree):
+    """Diffuse BSDFs as what files can hold: Blender's glTF exporter knows none."""
+    for plain in [node for node in tree.nodes if node.type == "BSDF_DIFFUSE"]:
+        shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
+        shader.inputs["Roughness"].default_value, shader.inputs["Specular IOR Level"].default_value = 1.0, 0.0
+        color = plain.inputs["Color"]
+        shader.inputs["Base Color"].default_value = color.default_value
+        if color.is_linked:
+            tree.links.new(color.links[0].from_socket, shader.inputs["Base Color"])
+        tree.links.new(shader.outputs[0], plain.outputs[0].links[0].to_socket)
+
+
+def through_the_doors(name, folder):
+    """The scene `name` rendered, and exported to USD and glTF: paths of the picture and of the files."""
+    _scene_of(name)
+    for material in bpy.data.materials:
+        _as_principled(material.node_tree)
+    scene = bpy.context.scene
+    scene.render.engine = "PENUMBRA"
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 48, 100
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.penumbra.spp, scene.penumbra.max_bounces = 128, 4
+    picture = os.path.join(folder, "f12.exr")
+    _render(picture)
+    files = [os.path.join(folder, f"scene.{ending}") for ending in ("usdc", "glb")]
+    for path in files:
+        bpy.ops.penumbra.export(filepath=path)
+    return [picture, files]
+
+
 def export_fails(folder):
     """Exports that are refused."""
     _scene_of("point_soft")

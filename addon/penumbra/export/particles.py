@@ -4,18 +4,18 @@ import numpy as np
 
 
 def systems(obj, render):
-    """(particle system, slot of its material) of each hair that shows as strands; `render` for F12, else the viewport."""
+    """(modifier, slot of its material) of each hair that shows as strands; `render` for F12, else the viewport."""
     for modifier in obj.modifiers:
         if modifier.type != "PARTICLE_SYSTEM" or not (modifier.show_render if render else modifier.show_viewport):
             continue
-        system = modifier.particle_system
-        settings = system.settings
+        settings = modifier.particle_system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
-            yield system, settings.material - 1
+            yield modifier, settings.material - 1
 
 
-def hand_over(scene, key, name, obj, system, render):
-    """Gives the strands of `system` of the evaluated `obj` to the engine's scene as shape `key`; False for none."""
+def hand_over(scene, key, name, obj, modifier, render):
+    """Gives the strands of a system of the evaluated `obj` to the engine's scene as shape `key`; False for none."""
+    system = modifier.particle_system
     settings = system.settings
     first, last = _strands(system, render)
     steps = 1 + 2 ** (settings.render_step if render else settings.display_step)
@@ -33,8 +33,23 @@ def hand_over(scene, key, name, obj, system, render):
     points = (world @ inverse[:3, :3].T + inverse[:3, 3]).reshape(count, steps, 3)
     radii = _radii(settings, points)
     ends = np.arange(1, count + 1, dtype=np.uint32) * np.uint32(steps)
-    scene.set_rounds(key, name, points.astype(np.float32).reshape(-1), radii.astype(np.float32).reshape(-1), ends, True)
+    scene.set_rounds(key, name, points.astype(np.float32).reshape(-1), radii.astype(np.float32).reshape(-1), ends, True,
+                     _uvs(obj, modifier, first, last))
     return True
+
+
+def _uvs(obj, modifier, first, last):
+    """Where on each UV map of the emitter the strands grow, the map to render with first."""
+    system = modifier.particle_system
+    ask, particles = system.uv_on_emitter, list(system.particles)
+    layers = sorted(enumerate(obj.data.uv_layers), key=lambda item: not item[1].active_render)
+    result = []
+    for number, layer in layers:
+        flat = [x for strand in range(first, last)
+                for x in ask(modifier, particle=particles[min(strand, len(particles) - 1)], particle_no=strand,
+                             uv_no=number)]
+        result.append((layer.name, np.asarray(flat, np.float32)))
+    return result
 
 
 def _strands(system, render):

@@ -131,8 +131,8 @@ class Exporter:
         key = (obj.name_full, "hair")
         if key not in self._object_index:
             found = self._object_index[key] = []
-            for system, slot in particles.systems(obj, self._render):
-                shape = self._hair_of(obj, system)
+            for modifier, slot in particles.systems(obj, self._render):
+                shape = self._hair_of(obj, modifier)
                 if shape is not None:
                     slots = obj.material_slots
                     # A slot that is not there is the last one.
@@ -140,12 +140,12 @@ class Exporter:
                     found.append(self._record(obj, shape, [material]))
         return self._object_index[key]
 
-    def _hair_of(self, obj, system):
+    def _hair_of(self, obj, modifier):
         """Hands over the hair of a particle system once; returns its key, or None where there is none."""
-        key = hash((obj.name_full, system.name, self._render)) & _KEY
+        key = hash((obj.name_full, modifier.name, self._render)) & _KEY
         self._used.add(key)
         if key not in self._meshes:
-            if not particles.hand_over(self.scene, key, f"{obj.name}, {system.name}", obj, system, self._render):
+            if not particles.hand_over(self.scene, key, f"{obj.name}, {modifier.name}", obj, modifier, self._render):
                 return None
             self._meshes.add(key)
             self._hair.setdefault(obj.name_full, set()).add(key)

@@ -10,10 +10,10 @@ use super::layers::UvSets;
 use super::light::LampShader;
 use super::mesh::{self, Dress, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
-use super::rounds::Ends;
+use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
 use super::{camera, light, material, nodes, random, rounds, world};
-use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, RoundsDesc, SceneDesc, ShapeRef};
+use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
@@ -22,7 +22,7 @@ pub struct BlenderScene {
     document: Document,
     materials: HashMap<u64, Arc<MaterialData>>,
     meshes: HashMap<u64, NamedMesh>,
-    rounds: HashMap<u64, Arc<RoundsDesc>>,
+    rounds: HashMap<u64, NamedRounds>,
     images: HashMap<String, InMemory>,
     /// How many images have been handed over.
     revisions: u64,
@@ -115,11 +115,12 @@ impl BlenderScene {
         positions: &[f32],
         radii: &[f32],
         ends: Ends<'_>,
+        uvs: &[LayerArray<'_>],
     ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, &mut warnings)?;
-        self.rounds.insert(key, rounds.into());
+        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, uvs, &mut warnings)?;
+        self.rounds.insert(key, rounds);
         self.of_shapes.insert(key, warnings);
         Ok(())
     }
@@ -214,8 +215,8 @@ impl BlenderScene {
                     let shape = if let Some(mesh) = self.meshes.get_mut(&data.mesh) {
                         desc.meshes.push(mesh.dressed(&dress));
                         ShapeRef::Mesh(desc.meshes.len() as u32 - 1)
-                    } else if let Some(rounds) = self.rounds.get(&data.mesh) {
-                        desc.rounds.push(rounds.clone());
+                    } else if let Some(rounds) = self.rounds.get_mut(&data.mesh) {
+                        desc.rounds.push(rounds.dressed(&dress.uv_maps));
                         ShapeRef::Rounds(desc.rounds.len() as u32 - 1)
                     } else {
                         continue;

@@ -147,3 +147,21 @@ fn of_object(desc: &InstanceDesc, names: &Names) -> OfObject {
         attributes: names.iter().map(find).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::desc::graph::{Function, Math};
+
+    #[test]
+    fn a_graph_follows_the_camera_where_what_is_needed_of_it_does() {
+        let mut graph = Graph::default();
+        let position = graph.leaf(Leaf::Position);
+        let window = graph.leaf(Leaf::Window);
+        let (quantity, from, to) = (crate::desc::graph::Quantity::Vector, Space::World, Space::Camera);
+        let turned = graph.push(Op::Transform { quantity, from, to, value: position });
+        let sum = graph.apply(Function::Math(Math::Add), &[position, window]);
+        assert!(!follows_camera(&graph, [position]));
+        assert!([window, turned, sum].iter().all(|&value| follows_camera(&graph, [value])));
+    }
+}
