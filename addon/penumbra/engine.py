@@ -6,7 +6,7 @@ import bpy
 import penumbra
 
 from . import passes, properties
-from .export import Exporter
+from .export import Exporter, libraries
 from .viewport import Viewport
 
 # Samples per pixel of a preview in the Properties editor, how long it may take, and how often it is shown on the way.
@@ -54,7 +54,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
         exporter.export(depsgraph, size, self.camera_override)
-        self._tell(exporter.warnings)
+        self._tell([*libraries.missing(), *exporter.warnings])
         if self.test_break():
             return
 

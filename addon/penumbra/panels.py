@@ -1,7 +1,6 @@
 """Penumbra's own panels; those of Blender and Cycles that hold for it, too, are in lent.py."""
 
 import bpy
-from bl_ui.properties_view_layer import ViewLayerCryptomattePanelHelper, ViewLayerLightgroupsPanelHelper
 
 from . import passes
 
@@ -191,16 +190,24 @@ class PENUMBRA_PT_passes_light(_Passes, bpy.types.Panel):
     )
 
 
-class PENUMBRA_PT_passes_cryptomatte(ViewLayerCryptomattePanelHelper, _Panel, bpy.types.Panel):
+class PENUMBRA_PT_passes_cryptomatte(_Panel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
     bl_context = "view_layer"
     bl_parent_id = "PENUMBRA_PT_passes"
     bl_options = {"DEFAULT_CLOSED"}
 
+    def draw(self, context):
+        bpy.types.VIEWLAYER_PT_layer_passes_cryptomatte.draw(self, context)
 
-class PENUMBRA_PT_passes_light_groups(ViewLayerLightgroupsPanelHelper, _Panel, bpy.types.Panel):
+
+class PENUMBRA_PT_passes_light_groups(_Panel, bpy.types.Panel):
+    bl_label = "Light Groups"
     bl_context = "view_layer"
     bl_parent_id = "PENUMBRA_PT_passes"
     bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        bpy.types.VIEWLAYER_PT_layer_passes_lightgroups.draw(self, context)
 
 
 PANELS = (

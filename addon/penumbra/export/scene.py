@@ -56,7 +56,7 @@ class Exporter:
             for name in [name for name in self.images if name == own or name.startswith(f"{own} ")]:
                 del self.images[name]
             self._known_materials.clear()
-        elif isinstance(edited, bpy.types.NodeTree):
+        elif isinstance(edited, bpy.types.NodeTree) and not edited.is_embedded_data:
             # A group is part of any number of materials.
             self._known_materials.clear()
 

@@ -72,14 +72,14 @@ mod tests {
     #[test]
     fn a_bend_is_a_spline_within_the_tolerance() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 1.0, 0.0]];
-        let (coarse, fine) = (flat(&points, 0.5), flat(&points, 0.02));
+        let (coarse, fine) = (flat(&points, 0.5), flat(&points, 0.05));
         assert!(points.iter().all(|p| coarse.contains(p) && fine.contains(p)));
         assert!(fine.len() > 2 * coarse.len(), "{} {}", fine.len(), coarse.len());
         // Half way between the middle points: (−a + 9 b + 9 c − d) / 16.
         let middle = [1.0, 0.5, 0.0];
         let nearest = fine.iter().map(|p| (p[0] - middle[0]).hypot(p[1] - middle[1])).fold(f32::INFINITY, f32::min);
         assert!(nearest < 0.06, "{nearest}");
-        let radius = 0.02;
+        let radius = 0.05;
         let four = points.map(|[x, y, z]| [x, y, z, radius]);
         for i in 0..=100 {
             let [x, y, ..] = at(&four, i as f32 / 100.0);
