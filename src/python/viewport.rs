@@ -45,6 +45,10 @@ impl Screen {
 
 impl Observer for Screen {
     fn wave(&self, film: &Film) {
+        // Whoever stops the render waits for it, and wants no picture of it.
+        if self.cancelled() {
+            return;
+        }
         let picture = film.develop();
         let Some(layer) = picture.layer("Combined") else { return };
         let row = picture.width as usize * layer.channels.len();
