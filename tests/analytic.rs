@@ -399,7 +399,7 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
     let indirect = |cutoff: f64| {
         let mut builder = Builder::default();
         let board: Vec<u8> = (0..64 * 64).map(|i| if (i % 64 / 8 + i / 512) % 2 == 0 { 255 } else { 0 }).collect();
-        builder.desc.images.push(ImageDesc {
+        let image = ImageDesc {
             name: "board".into(),
             place: Default::default(),
             width: 64,
@@ -407,7 +407,8 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
             channels: 2,
             color_space: ColorSpace::Linear,
             pixels: PixelData::U8(board.iter().flat_map(|&alpha| [255, alpha]).collect()),
-        });
+        };
+        builder.desc.images.push(image.into());
         builder.desc.textures.push(TextureDesc {
             place: Default::default(),
             image: 0,

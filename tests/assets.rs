@@ -49,7 +49,7 @@ fn every_gltf_renders() {
         let mut desc = import::scene(&path, &ImportOptions::default(), &mut warnings).unwrap();
         if path.to_string_lossy().contains("flight_helmet") {
             let image = import::load_image(&folder.join("hdri/chinese_garden_1k.hdr"), ColorSpace::Linear).unwrap();
-            desc.images.push(image);
+            desc.images.push(image.into());
             let kind = LightKind::Dome { radiance: [1.0; 3], image: Some(desc.images.len() as u32 - 1) };
             desc.lights.push(LightDesc::new("garden", desc.place.clone(), DAffine3::IDENTITY, kind));
         }

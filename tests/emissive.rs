@@ -54,7 +54,7 @@ fn square(open: Open) -> Builder {
     builder.ground(10.0, floor);
     let (width, filter) = if matches!(open, Open::Mask) { (2, Filter::Nearest) } else { (256, Filter::Linear) };
     let alpha = (0..width).flat_map(|i| [1.0, 1.0 - (i as f32 + 0.5) / width as f32]).collect();
-    builder.desc.images.push(ImageDesc {
+    let image = ImageDesc {
         name: "alpha".into(),
         place: Default::default(),
         width,
@@ -62,7 +62,8 @@ fn square(open: Open) -> Builder {
         channels: 2,
         color_space: ColorSpace::Linear,
         pixels: PixelData::F32(alpha),
-    });
+    };
+    builder.desc.images.push(image.into());
     let (wrap_u, wrap_v) = (Wrap::Clamp, Wrap::Clamp);
     builder.desc.textures.push(TextureDesc { place: Default::default(), image: 0, wrap_u, wrap_v, filter });
     let texture = TextureRef { texture: 0, uv_set: 0, transform: TextureTransform::IDENTITY };

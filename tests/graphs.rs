@@ -230,7 +230,7 @@ fn a_plane_shows_the_values_of_its_graph() {
 /// Images, one with alpha.
 fn with_image(builder: &mut Builder) -> TextureRef {
     let texels = (0..16 * 8 * 4).map(|i| (i * 89 % 251) as u8).collect();
-    builder.desc.images.push(ImageDesc {
+    let image = ImageDesc {
         name: "image".into(),
         place: Default::default(),
         width: 16,
@@ -238,7 +238,8 @@ fn with_image(builder: &mut Builder) -> TextureRef {
         channels: 4,
         color_space: ColorSpace::Srgb,
         pixels: PixelData::U8(texels),
-    });
+    };
+    builder.desc.images.push(image.into());
     builder.desc.textures.push(TextureDesc {
         place: Default::default(),
         image: 0,

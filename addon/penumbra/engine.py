@@ -6,8 +6,13 @@ import bpy
 import penumbra
 
 from . import passes, properties
-from .export import Exporter
+from .export import Exporter, libraries
 from .viewport import Viewport
+
+# Samples per pixel of a preview in the Properties editor, how long it may take, and how often it is shown on the way.
+_PREVIEW_SPP = 32
+_PREVIEW_SECONDS = 2.0
+_PREVIEW_INTERVAL = 0.1
 
 # Viewports by the address of their engine: attributes of an engine are not all kept by Blender.
 VIEWPORTS = {}
@@ -18,7 +23,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
 
     bl_idname = "PENUMBRA"
     bl_label = "Penumbra"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_eevee_viewport = True
     bl_use_postprocess = True
     bl_use_shading_nodes_custom = False
@@ -49,10 +54,9 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
         exporter.export(depsgraph, size, self.camera_override)
-        self._tell(exporter.warnings)
+        self._tell([*libraries.missing(), *exporter.warnings])
         if self.test_break():
             return
-
 
         def show(picture):
             self._fill(view_layer, picture)
@@ -61,11 +65,19 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             exporter.scene,
             observer=self._observe,
             on_picture=None if bpy.app.background else show,
+            picture_interval=_PREVIEW_INTERVAL if self.is_preview else 1.0,
             frame=scene.frame_current_final,
-            **properties.settings(scene, view_layer),
+            **self._settings(scene, view_layer),
         )
         self._tell(picture.warnings)
         self._fill(view_layer, picture)
+
+    def _settings(self, scene, view_layer):
+        """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""
+        settings = properties.settings(scene, view_layer)
+        if self.is_preview:
+            settings.update(spp=_PREVIEW_SPP, time=_PREVIEW_SECONDS, passes=["combined"])
+        return settings
 
     def view_update(self, context, depsgraph):
         """The scene was edited while the viewport shows it."""
@@ -128,8 +140,8 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             self.end_result(result)
 
     def _tell(self, warnings):
-        """Each warning in Blender's own reports, once."""
-        for warning in warnings:
+        """Each warning in Blender's own reports, once; not at every change of a node for its preview."""
+        for warning in [] if self.is_preview else warnings:
             self.report({"WARNING"}, warning)
 
 

@@ -1,15 +1,10 @@
-"""Panels: Penumbra's own, and those of Blender and Cycles that hold for it, too."""
+"""Penumbra's own panels; those of Blender and Cycles that hold for it, too, are in lent.py."""
 
 import bpy
 
+from . import passes
+
 _ENGINE = "PENUMBRA"
-# Panels of Blender's own engines that mean nothing here.
-_EXCLUDED = {
-    "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "RENDER_PT_simplify_render", "RENDER_PT_simplify_greasepencil",
-    "VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes",
-}
-# Panels that show for Penumbra, too, and the set of engines that each had by itself.
-_LENT = {}
 
 
 class _Panel:
@@ -33,12 +28,40 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
+        pass
+
+
+class PENUMBRA_PT_sampling_viewport(_Panel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_sampling"
+
+    def draw(self, context):
+        self._split().prop(context.scene.penumbra, "viewport_spp", text="Samples")
+
+
+class PENUMBRA_PT_sampling_render(_Panel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_sampling"
+
+    def draw(self, context):
         layout, own = self._split(), context.scene.penumbra
         column = layout.column(align=True)
         column.prop(own, "spp", text="Samples")
         column.prop(own, "time", text="Time Limit")
-        layout.prop(own, "viewport_spp")
-        layout.prop(own, "seed")
+
+
+class PENUMBRA_PT_sampling_lights(_Panel, bpy.types.Panel):
+    bl_label = "Lights"
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, own = self._split(), context.scene.penumbra
+        layout.prop(own, "light_samples", text="Samples")
+        layout.prop(own, "light_selection", text="Selection")
 
 
 class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
@@ -49,23 +72,30 @@ class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
 
     def draw(self, context):
         layout, own = self._split(), context.scene.penumbra
-        for name in ("sampler", "light_samples", "light_selection", "effects"):
-            layout.prop(own, name)
+        row = layout.row(align=True)
+        row.prop(own, "seed")
+        row.prop(own, "use_animated_seed", text="", icon="TIME")
+        layout.prop(own, "sampler", text="Pattern")
+        layout.prop(own, "effects")
 
 
 class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, own = self._split(), context.scene.penumbra
         layout.prop(own, "integrator")
-        layout.prop(own, "max_bounces")
+        column = layout.column()
+        column.active = own.integrator == "path"
+        column.prop(own, "max_bounces")
 
 
 class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
     bl_label = "Ambient Occlusion"
     bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, scene = self._split(), context.scene
@@ -77,6 +107,7 @@ class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, scene = self._split(), context.scene
@@ -89,74 +120,120 @@ class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
         layout.prop(scene.render, "film_transparent", text="Transparent")
 
 
+class PENUMBRA_PT_performance(_Panel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, render = self._split(), context.scene.render
+        column = layout.column()
+        column.prop(render, "threads_mode")
+        count = column.column(align=True)
+        count.enabled = render.threads_mode == "FIXED"
+        count.prop(render, "threads")
+
+
 class PENUMBRA_PT_passes(_Panel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
 
     def draw(self, context):
+        pass
+
+
+class _Passes(_Panel):
+    """Check boxes of passes: (heading, [(name of the property, text)]); Penumbra's own where Blender has none."""
+
+    bl_context = "view_layer"
+    bl_parent_id = "PENUMBRA_PT_passes"
+    BOXES = ()
+
+    def draw(self, context):
         layout, layer = self._split(), context.view_layer
-        own = layer.penumbra
-        for title, names in (
-            ("Shadow and Occlusion", ("ambient_occlusion",)),
-            ("Data", ("z", "mist", "position", "normal", "vector", "uv", "object_index", "material_index")),
-            ("Light", ("diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_indirect",
-                       "glossy_color", "transmission_direct", "transmission_indirect", "transmission_color",
-                       "emit", "environment")),
-            ("Cryptomatte", ("cryptomatte_object", "cryptomatte_material", "cryptomatte_asset")),
-        ):
-            column = layout.column(heading=title, align=True)
-            for name in names:
-                if hasattr(layer, f"use_pass_{name}"):
-                    column.prop(layer, f"use_pass_{name}")
-            if title.startswith("Shadow"):
-                for name in ("use_pass_shadow", "use_pass_unshadowed"):
-                    column.prop(own, name)
-        column = layout.column(heading="Penumbra", align=True)
-        for name in own.__annotations__:
-            if name not in {"use_pass_shadow", "use_pass_unshadowed"}:
-                column.prop(own, name)
+        for heading, boxes in self.BOXES:
+            column = layout.column(heading=heading, align=True)
+            for name, text in boxes:
+                if hasattr(layer.penumbra, f"use_pass_{name}"):
+                    column.prop(layer.penumbra, f"use_pass_{name}", text=text)
+                elif passes.is_known(f"use_pass_{name}"):
+                    column.prop(layer, f"use_pass_{name}", text=text)
+
+
+class PENUMBRA_PT_passes_shadow(_Passes, bpy.types.Panel):
+    bl_label = "Shadow and Occlusion"
+    BOXES = (("Include", (("shadow", "Shadow"), ("unshadowed", "Diffuse Direct Unshadowed"),
+                          ("ambient_occlusion", "Ambient Occlusion"))),)
+
+
+class PENUMBRA_PT_passes_data(_Passes, bpy.types.Panel):
+    bl_label = "Data"
+    BOXES = (
+        ("Include", (("z", "Z"), ("mist", "Mist"), ("position", "Position"), ("normal", "Normal"), ("vector", "Vector"),
+                     ("uv", "UV"))),
+        ("Denoising", (("denoising_normal", "Normal"), ("denoising_albedo", "Albedo"), ("denoising_depth", "Depth"))),
+        ("Indexes", (("object_index", "Object Index"), ("material_index", "Material Index"))),
+        ("Debug", (("sample_count", "Sample Count"),)),
+    )
+
+    def draw(self, context):
+        super().draw(context)
+        self.layout.prop(context.view_layer, "pass_alpha_threshold")
+
+
+class PENUMBRA_PT_passes_light(_Passes, bpy.types.Panel):
+    bl_label = "Light"
+    BOXES = (
+        *((lobe.capitalize(), tuple((f"{lobe}_{part}", part.capitalize()) for part in ("direct", "indirect", "color")))
+          for lobe in ("diffuse", "glossy", "transmission")),
+        ("Other", (("emit", "Emission"), ("environment", "Environment"))),
+    )
+
+
+class PENUMBRA_PT_passes_cryptomatte(_Panel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+    bl_parent_id = "PENUMBRA_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        bpy.types.VIEWLAYER_PT_layer_passes_cryptomatte.draw(self, context)
+
+
+class PENUMBRA_PT_passes_light_groups(_Panel, bpy.types.Panel):
+    bl_label = "Light Groups"
+    bl_context = "view_layer"
+    bl_parent_id = "PENUMBRA_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        bpy.types.VIEWLAYER_PT_layer_passes_lightgroups.draw(self, context)
 
 
 PANELS = (
     PENUMBRA_PT_sampling,
+    PENUMBRA_PT_sampling_viewport,
+    PENUMBRA_PT_sampling_render,
+    PENUMBRA_PT_sampling_lights,
     PENUMBRA_PT_sampling_advanced,
     PENUMBRA_PT_light_paths,
     PENUMBRA_PT_ambient_occlusion,
     PENUMBRA_PT_film,
+    PENUMBRA_PT_performance,
     PENUMBRA_PT_passes,
+    PENUMBRA_PT_passes_shadow,
+    PENUMBRA_PT_passes_data,
+    PENUMBRA_PT_passes_light,
+    PENUMBRA_PT_passes_cryptomatte,
+    PENUMBRA_PT_passes_light_groups,
 )
-
-
-def _shared():
-    """Panels of Blender's own and of Cycles that show what holds for Penumbra, too."""
-    for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is None or panel in PANELS:
-            continue
-        of_blender = "BLENDER_RENDER" in engines and panel.__name__ not in _EXCLUDED
-        of_cycles = engines == {"CYCLES"} and panel.__name__.startswith(
-            ("CYCLES_LIGHT_PT", "CYCLES_WORLD_PT", "CYCLES_MATERIAL_PT", "CYCLES_OBJECT_PT_lightgroup",
-             "CYCLES_OBJECT_PT_light_linking", "CYCLES_OBJECT_PT_shadow_linking", "CYCLES_OBJECT_PT_visibility",
-             "CYCLES_CAMERA_PT_dof", "CYCLES_VIEW_LAYER_PT_light_groups"))
-        if of_blender or of_cycles:
-            yield panel
 
 
 def register():
     for panel in PANELS:
         bpy.utils.register_class(panel)
-    for panel in list(_shared()):
-        # A set of its own: Cycles' panels all have one and the same.
-        _LENT[panel] = panel.__dict__.get("COMPAT_ENGINES")
-        panel.COMPAT_ENGINES = {*panel.COMPAT_ENGINES, _ENGINE}
 
 
 def unregister():
-    for panel, engines in _LENT.items():
-        if engines is None:
-            del panel.COMPAT_ENGINES
-        else:
-            panel.COMPAT_ENGINES = engines
-    _LENT.clear()
     for panel in reversed(PANELS):
         bpy.utils.unregister_class(panel)

@@ -68,6 +68,11 @@ def layers(view_layer):
     return result
 
 
+def is_known(box):
+    """True for a check box of ViewLayer's that asks for a pass which the engine has."""
+    return any(_BOXES.get(row["name"]) == box for row in penumbra.passes())
+
+
 def own_boxes():
     """Passes that Blender has no check box for: (name, layer, help)."""
     return [

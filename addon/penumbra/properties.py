@@ -7,11 +7,12 @@ from . import passes
 
 # What Blender has properties of its own for.
 _BLENDERS = {"passes", "threads", "half", "filter"}
+_UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
 
 
 def _property(row):
     kind, default = row["kind"], row["default"]
-    title = row["name"].replace("_", " ").capitalize()
+    title = row["name"].replace("_", " ").title()
     common = {"name": title, "description": row["help"]}
     if kind == "bool":
         return bpy.props.BoolProperty(default=default == "on", **common)
@@ -24,6 +25,8 @@ def _property(row):
     number = float(default or 0) if kind == "float" else int(default or 0)
     lowest = 0 if not default else row["min"]
     if kind == "float":
+        if row["name"] in _UNITS:
+            common["unit"] = _UNITS[row["name"]]
         return bpy.props.FloatProperty(default=number, min=lowest, max=min(row["max"], 3e38), **common)
     return bpy.props.IntProperty(default=number, min=lowest, max=min(row["max"], 2**31 - 1), **common)
 
@@ -37,6 +40,9 @@ class PenumbraSceneSettings(bpy.types.PropertyGroup):
 
     __annotations__ = {
         **_annotations(),
+        "use_animated_seed": bpy.props.BoolProperty(
+            name="Use Animated Seed", description="Another seed, and so other noise, for every frame", default=False
+        ),
         "viewport_spp": bpy.props.IntProperty(
             name="Viewport Samples", description="Samples per pixel of the rendered viewport", default=256, min=1
         ),
@@ -64,6 +70,9 @@ def settings(scene, view_layer):
         if not row["default"] and not value:
             continue
         result[name] = value
+    if own.use_animated_seed:
+        # Frames one after the other lie far apart.
+        result["seed"] = (own.seed + 0x9E3779B1 * scene.frame_current) & 0x7FFF_FFFF
     if scene.render.threads_mode == "FIXED":
         result["threads"] = scene.render.threads
     cycles = getattr(scene, "cycles", None)

@@ -12,7 +12,7 @@ from . import properties
 from .export import Exporter, camera
 
 # Seconds between two looks for a new picture.
-_POLL = 1.0 / 30.0
+_POLL = 1.0 / 60.0
 
 
 class Viewport:

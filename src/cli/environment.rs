@@ -39,7 +39,7 @@ pub fn apply(args: &ArgMatches, scene: &mut SceneDesc) -> anyhow::Result<()> {
         bail!("--environment-strength must be finite and not negative");
     }
     let image: ImageDesc = load_image(path, color_space(path)).context("can't use --environment")?;
-    scene.images.push(image);
+    scene.images.push(image.into());
     scene.lights.retain(|light| !light.kind.is_dome());
     let transform = DAffine3::from_mat3(DMat3::from_rotation_y(rotation.to_radians()));
     let kind = LightKind::Dome { radiance: [strength; 3], image: Some(scene.images.len() as u32 - 1) };

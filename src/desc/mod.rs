@@ -56,8 +56,8 @@ pub struct SceneDesc {
     pub materials: Vec<MaterialDesc>,
     /// Ways to look an image up.
     pub textures: Vec<TextureDesc>,
-    /// Decoded images; shared by any number of textures.
-    pub images: Vec<ImageDesc>,
+    /// Decoded images; shared by any number of textures, and with whoever hands the same over again.
+    pub images: Vec<Arc<ImageDesc>>,
     /// Lights that are not emissive meshes, domes included.
     pub lights: Vec<LightDesc>,
     /// What domes emit that is more than an image.

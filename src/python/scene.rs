@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::exception;
 use crate::desc::SceneDesc;
 use crate::error::{Result, Warnings};
-use crate::import::blender::{BlenderScene, ImageSource, LayerArray, MeshArrays};
+use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays};
 
 /// A scene in Blender's terms: one document and the arrays of its meshes. The add-on fills it; pieces
 /// that are set again replace the old ones.
@@ -49,9 +49,19 @@ impl Scene {
         Self::default()
     }
 
-    /// Takes in everything but meshes, images in memory and placements: JSON.
+    /// Takes in everything but materials, meshes, images in memory and placements: JSON.
     fn set_document(&self, json: &str) -> PyResult<()> {
         self.lock().set_document(json).map_err(|error| exception(&error))
+    }
+
+    /// Takes in the material `key`: JSON.
+    fn set_material(&self, key: u64, json: &str) -> PyResult<()> {
+        self.lock().set_material(key, json).map_err(|error| exception(&error))
+    }
+
+    /// Says which materials objects mean by their indices, by key; all others are forgotten.
+    fn set_materials(&self, keys: Vec<u64>) -> PyResult<()> {
+        self.lock().set_materials(&keys).map_err(|error| exception(&error))
     }
 
     /// Takes in the mesh `key`. Arrays are C-contiguous, float32 and int32: positions (n, 3),
@@ -90,7 +100,9 @@ impl Scene {
     }
 
     /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the
-    /// index behind its last point); points that stand alone where `ends` is empty.
+    /// index behind its last point); points that stand alone where `ends` is empty. Between its points a strand is
+    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))].
+    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new()))]
     fn set_rounds(
         &self,
         key: u64,
@@ -98,10 +110,14 @@ impl Scene {
         positions: Floats<'_>,
         radii: Floats<'_>,
         ends: PyReadonlyArray1<'_, u32>,
+        smooth: bool,
+        uvs: Vec<Layer<'_>>,
     ) -> PyResult<()> {
         let ends = ends.as_slice().map_err(|_| contiguous())?;
         let (positions, radii) = (floats(&positions)?, floats(&radii)?);
-        self.lock().set_rounds(key, name, positions, radii, ends).map_err(|error| exception(&error))
+        let ends = Ends { points: ends, smooth };
+        let uvs = layers(&uvs)?;
+        self.lock().set_rounds(key, name, positions, radii, ends, &uvs).map_err(|error| exception(&error))
     }
 
     /// Forgets the shape `key`.

@@ -45,6 +45,10 @@ impl Screen {
 
 impl Observer for Screen {
     fn wave(&self, film: &Film) {
+        // Whoever stops the render waits for it, and wants no picture of it.
+        if self.cancelled() {
+            return;
+        }
         let picture = film.develop();
         let Some(layer) = picture.layer("Combined") else { return };
         let row = picture.width as usize * layer.channels.len();
@@ -143,9 +147,13 @@ impl Viewport {
         let session = &mut *self.session();
         self.halt(session);
         *self.screen.lock() = None;
-        if changed || session.scene.is_none() || settings != session.settings {
+        let lit_by_view = |scene: &scene::Scene| scene.follows_camera;
+        if changed || session.scene.as_ref().is_none_or(lit_by_view) || settings != session.settings {
             let mut warnings = Warnings::new();
-            let mut desc = source.lock().scene(&mut warnings)?;
+            let mut source = source.lock();
+            source.keep_images();
+            let mut desc = source.scene(&mut warnings)?;
+            drop(source);
             session.exposure = desc.cameras.first().map_or(1.0, |camera| camera.exposure);
             let camera = view.camera(session.exposure, &desc.place);
             desc.cameras = vec![camera];

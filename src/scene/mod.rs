@@ -54,6 +54,8 @@ pub struct Scene {
     pub lights: LightSet,
     /// True where the camera sees a dome; else what lies behind everything has alpha 0.
     pub background_visible: bool,
+    /// True where a dome's radiance goes by the camera: another view lights the scene otherwise.
+    pub follows_camera: bool,
     /// True where Combined lacks what lies behind everything.
     pub film_transparent: bool,
     /// Opacity from which on a surface is what the data passes show.

@@ -80,7 +80,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, &mut warnings);
+    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, cache, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
@@ -94,7 +94,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         let groups = passes.groups();
         let (materials, textures) = (&materials, &textures);
         let shared = Shared { materials, domes: &domes, textures, asked: &asked, camera, origin };
-        let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, &mut warnings);
+        let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, cache, &mut warnings);
         tell_of_darkness(&desc, &lights, materials, &mut warnings);
         lights
     } else {
@@ -119,6 +119,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         effects,
         lights,
         background_visible,
+        follows_camera: desc.dome_shaders.iter().any(|dome| graphs::follows_camera(&dome.graph, [dome.radiance])),
         film_transparent,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
@@ -133,8 +134,9 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
 }
 
 impl Scene {
-    /// Looks at the same scene through another camera, or at another size: nothing else is prepared again.
-    /// `render` says what part of a picture of `whole` pixels is wanted.
+    /// Looks at the same scene through another camera, or at another size: nothing else is prepared again, so that a
+    /// dome that [follows the camera](Scene::follows_camera) stays where it was. `render` says what part of a
+    /// picture of `whole` pixels is wanted.
     ///
     /// # Errors
     /// A camera or a part that makes no picture; the scene then stays as it was.

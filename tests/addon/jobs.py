@@ -166,6 +166,36 @@ def export(name, path, *options):
     return [listener.document, _left()]
 
 
+def _as_principled(tree):
+    """Diffuse BSDFs as what files can hold: Blender's glTF exporter knows none."""
+    for plain in [node for node in tree.nodes if node.type == "BSDF_DIFFUSE"]:
+        shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
+        shader.inputs["Roughness"].default_value, shader.inputs["Specular IOR Level"].default_value = 1.0, 0.0
+        color = plain.inputs["Color"]
+        shader.inputs["Base Color"].default_value = color.default_value
+        if color.is_linked:
+            tree.links.new(color.links[0].from_socket, shader.inputs["Base Color"])
+        tree.links.new(shader.outputs[0], plain.outputs[0].links[0].to_socket)
+
+
+def through_the_doors(name, folder):
+    """The scene `name` rendered, and exported to USD and glTF: paths of the picture and of the files."""
+    _scene_of(name)
+    for material in bpy.data.materials:
+        _as_principled(material.node_tree)
+    scene = bpy.context.scene
+    scene.render.engine = "PENUMBRA"
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 48, 100
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.penumbra.spp, scene.penumbra.max_bounces = 128, 4
+    picture = os.path.join(folder, "f12.exr")
+    _render(picture)
+    files = [os.path.join(folder, f"scene.{ending}") for ending in ("usdc", "glb")]
+    for path in files:
+        bpy.ops.penumbra.export(filepath=path)
+    return [picture, files]
+
+
 def export_fails(folder):
     """Exports that are refused."""
     _scene_of("point_soft")
@@ -260,27 +290,56 @@ def empty_scene(folder):
     return path
 
 
-def bad_input(folder):
-    """A missing texture, a vertex that is no number, slots without materials, an unknown node."""
-    _scene(spp=2)
-    _room()
-    plane = bpy.data.objects["Plane"]
+def _on_the_floor(node_type):
+    """A node of the floor's material, and its Principled BSDF."""
     material = bpy.data.materials.new("Wood")
     material.use_nodes = True
     tree = material.node_tree
-    texture = tree.nodes.new("ShaderNodeTexImage")
+    bpy.data.objects["Plane"].data.materials.append(material)
+    return tree, tree.nodes.new(node_type), next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+
+def _missing_texture(folder):
+    tree, texture, shader = _on_the_floor("ShaderNodeTexImage")
     texture.image = bpy.data.images.new("wood", 1, 1)
     texture.image.source = "FILE"
     texture.image.filepath = "/no/such/wood.png"
-    bevel = tree.nodes.new("ShaderNodeBevel")
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+
+
+def _unknown_node(folder):
+    tree, bevel, shader = _on_the_floor("ShaderNodeBevel")
     tree.links.new(bevel.outputs["Normal"], shader.inputs["Normal"])
-    plane.data.materials.append(material)
-    cube = bpy.data.objects["Cube"]
-    cube.data.vertices[0].co.x = float("nan")
+
+
+def _mesh_with_nan(folder):
+    bpy.data.objects["Cube"].data.vertices[0].co.x = float("nan")
+
+
+def _empty_slots(folder):
     for _ in range(100):
-        cube.data.materials.append(None)
+        bpy.data.objects["Cube"].data.materials.append(None)
+
+
+def _missing_library(folder):
+    here, library = (os.path.join(folder, name) for name in ("here.blend", "library.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=here)
+    bpy.data.objects["Cube"].name = "Linked"
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    bpy.ops.wm.open_mainfile(filepath=here)
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = ["Linked"]
+    bpy.context.scene.collection.objects.link(wanted.objects[0])
+    bpy.ops.wm.save_as_mainfile(filepath=here)
+    os.remove(library)
+    bpy.ops.wm.open_mainfile(filepath=here)
+
+
+def bad_input(kind, folder):
+    """A scene of which something is wrong: path of its picture."""
+    _scene(spp=2)
+    _room()
+    globals()[f"_{kind}"](folder)
     path = os.path.join(folder, "bad.exr")
     _render(path)
     return path
@@ -298,6 +357,178 @@ def raises(folder):
         return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
     finally:
         kind._render = render
+
+
+class _Recorder:
+    """Stands in front of the engine's scene: notes what is handed over, and hands it over."""
+
+    def __init__(self, scene):
+        self._scene, self.calls = scene, []
+
+    def __getattr__(self, name):
+        def call(*arguments, **named):
+            self.calls.append([name, str(arguments[1]) if name in {"set_mesh", "set_rounds"} else ""])
+            return getattr(self._scene, name)(*arguments, **named)
+
+        return call
+
+
+class _Viewport:
+    """A viewport without a window: what crosses at each edit, and the picture after it."""
+
+    def __init__(self, size=(64, 48)):
+        import penumbra
+        from bl_ext.user_default.penumbra.export import Exporter
+
+        self._size = size
+        self._scene = penumbra.Scene()
+        self.recorder = _Recorder(self._scene)
+        self._exporter = Exporter(self.recorder)
+        self.render = penumbra.Viewport()
+
+    def show(self, edit=None):
+        """Makes an edit; returns what crossed for it and the mean of the finished picture."""
+        self.recorder.calls.clear()
+        if edit is None:
+            self._update(bpy.context.evaluated_depsgraph_get())
+        else:
+            # Blender says what was edited while it calls this.
+            handler = lambda _scene, depsgraph: self._update(depsgraph)
+            bpy.app.handlers.depsgraph_update_post.append(handler)
+            try:
+                edit()
+                bpy.context.view_layer.update()
+            finally:
+                bpy.app.handlers.depsgraph_update_post.remove(handler)
+        return [list(self.recorder.calls), self._picture()]
+
+    def _update(self, depsgraph):
+        self._exporter.update(depsgraph, self._size, None)
+
+    def look(self, **view):
+        """The picture of a view for which nothing crosses."""
+        self.recorder.calls.clear()
+        return [list(self.recorder.calls), self._picture(False, **view)]
+
+    def _picture(self, changed=True, **changes):
+        camera = bpy.context.scene.camera
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        rows = lambda matrix: [list(row) for row in matrix]
+        window = camera.calc_matrix_camera(depsgraph, x=self._size[0], y=self._size[1])
+        view = {"size": self._size, "matrix": rows(camera.matrix_world), "window": rows(window), "orthographic": False,
+                "clip_start": 0.1, "clip_end": 100.0, **changes}
+        self.render.show(self._scene, json.dumps(view), changed, passes=["combined"], spp=4)
+        picture, until = None, time.monotonic() + 60.0
+        while (picture is None or picture[3] < 4 or picture[0] < self._size[0]) and time.monotonic() < until:
+            picture = self.render.picture() or picture
+            time.sleep(0.002)
+        return np.asarray(picture[2]).reshape(-1, 4)[:, :3].mean(axis=0).tolist()
+
+
+def viewport_edits(folder):
+    """What crosses for each kind of edit, and how the picture changes."""
+    _scene()
+    _room()
+    for name in ("Plane", "Cube"):
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        bpy.data.objects[name].data.materials.append(material)
+    image = bpy.data.images.new("paint", 4, 4)
+    tree = bpy.data.materials["Plane"].node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    tree.links.new(texture.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    viewport = _Viewport()
+    answer = {"first": viewport.show()}
+    cube = bpy.data.objects["Cube"]
+
+    def move():
+        cube.location.x = 1.0
+
+    def color():
+        bpy.data.materials["Cube"].node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (1, 0, 0, 1)
+
+    def paint():
+        image.pixels.foreach_set(np.ones(64, np.float32))
+        image.update()
+        image.update_tag()
+
+    def reshape():
+        cube.data.vertices[0].co.z += 0.5
+        cube.data.update()
+
+    def delete():
+        bpy.data.objects.remove(cube)
+
+    for edit in (move, color, paint, reshape, delete):
+        answer[edit.__name__] = viewport.show(edit)
+    viewport.render.stop()
+    return answer
+
+
+def viewport_window(folder):
+    """A world that is seen through the window's coordinates, from two sides of a room that has only it for a light."""
+    scene = _scene()
+    bpy.ops.mesh.primitive_plane_add(size=10)
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    coordinates, parts = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeSeparateXYZ")
+    tree.links.new(coordinates.outputs["Camera"], parts.inputs[0])
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    tree.links.new(parts.outputs["X"], background.inputs["Color"])
+    viewport = _Viewport()
+    first = viewport.show()[1]
+    camera = scene.camera
+    turned = camera.matrix_world.copy()
+    camera.rotation_euler.z = 1.2
+    bpy.context.view_layer.update()
+    looked = viewport.look()[1]
+    viewport.render.stop()
+    afresh = _Viewport()
+    expected = afresh.show()[1]
+    afresh.render.stop()
+    assert turned != camera.matrix_world
+    return [first, looked, expected]
+
+
+class _Context:
+    """A context of these members and no others."""
+
+    def __init__(self, **members):
+        self.__dict__.update(members)
+
+    def __getattr__(self, _name):
+        return None
+
+
+def panels_of(engine):
+    """Names of the panels that show in the Properties editor for a mesh with a material, a lamp and the world."""
+    _scene()
+    _room()
+    cube, lamp, scene = bpy.data.objects["Cube"], bpy.data.objects["Area"], bpy.context.scene
+    material = bpy.data.materials.new("Wood")
+    cube.data.materials.append(material)
+    scene.render.engine = engine
+    base = {"engine": engine, "scene": scene, "view_layer": bpy.context.view_layer, "world": scene.world,
+            "space_data": _Context(), "preferences": bpy.context.preferences}
+    shown = {}
+    others = {"material", "object", "world", "render", "view_layer"}
+    for kind, obj, light, stuff, tabs in (("mesh", cube, None, material, others), ("lamp", lamp, lamp.data, None, {"data"})):
+        context = _Context(**base, object=obj, active_object=obj, light=light, material=stuff)
+        names = []
+        for name in dir(bpy.types):
+            panel = getattr(bpy.types, name)
+            if not name.startswith(("CYCLES_", "PENUMBRA_", "DATA_PT", "MATERIAL_PT", "OBJECT_PT_vis")) or "_PT_" not in name:
+                continue
+            poll = getattr(panel, "poll", None)
+            engines = getattr(panel, "COMPAT_ENGINES", None)
+            place = getattr(panel, "bl_space_type", ""), getattr(panel, "bl_context", "")
+            if place[0] != "PROPERTIES" or place[1] not in tabs or engines is None or poll is None:
+                continue
+            if poll(context):
+                names.append(name)
+        shown[kind] = names
+    return shown
 
 
 def border(folder):

@@ -368,6 +368,83 @@ def hair():
     lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
 
 
+def _grown(obj, **settings):
+    """Particles on an object."""
+    obj.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    system = obj.particle_systems[0].settings
+    for key, value in settings.items():
+        setattr(system, key, value)
+    return system
+
+
+def particle_hair():
+    """Curled hair with children, tapered and shaped, and hair of an instanced object without."""
+    room()
+    fur = material("Fur", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2, 1.0))
+    bpy.ops.mesh.primitive_plane_add(size=3, location=(0.3, -1.0, 0.4), rotation=(0.2, 0.1, 0.3))
+    lawn = bpy.context.object
+    lawn.scale = (1.0, 0.7, 1.0)
+    for skin in (bpy.data.materials["Plain"], fur):
+        lawn.data.materials.append(skin)
+    hair = _grown(lawn, type="HAIR", count=60, hair_length=0.8, render_step=3, material=2)
+    hair.child_type = "INTERPOLATED"
+    hair.rendered_child_count = 10
+    hair.roughness_2, hair.kink, hair.kink_amplitude = 0.05, "CURL", 0.1
+    hair.radius_scale, hair.root_radius, hair.tip_radius, hair.shape = 0.08, 1.0, 0.3, -0.3
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.3)
+    ball = bpy.context.object
+    ball.data.materials.append(fur)
+    plain = _grown(ball, type="HAIR", count=80, hair_length=0.3, render_step=2)
+    plain.radius_scale, plain.use_close_tip = 0.03, True
+    balls = bpy.data.collections.new("Balls")
+    bpy.context.scene.collection.objects.unlink(ball)
+    balls.objects.link(ball)
+    for x in (-2.0, 2.2):
+        add(f"Balls {x}", None, location=(x, -1.0, 1.0), instance_type="COLLECTION", instance_collection=balls)
+    bpy.context.scene.cycles_curves.shape = "THICK"
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def particle_fur():
+    """Hair of one radius: Cycles leaves the taper out of its normals."""
+    particle_hair()
+    for settings in bpy.data.particles:
+        settings.kink, settings.use_close_tip = "NO", False
+        settings.radius_scale, settings.root_radius, settings.tip_radius = 0.02, 1.0, 1.0
+
+
+def particle_instances():
+    """Objects on particles, and their emitter hidden."""
+    room()
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.5, location=(0.0, 8.0, 0.0))
+    ball = bpy.context.object
+    ball.data.materials.append(material("Ball", "ShaderNodeBsdfDiffuse", Color=(0.2, 0.6, 0.3, 1.0)))
+    bpy.ops.mesh.primitive_plane_add(size=4, location=(0.0, -1.0, 0.5))
+    emitter = bpy.context.object
+    emitter.show_instancer_for_render = False
+    grown = _grown(emitter, type="HAIR", count=40, render_type="OBJECT", particle_size=0.4, size_random=0.5)
+    grown.use_advanced_hair = True
+    grown.instance_object = ball
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def hair_curves_bent():
+    """Hair curves that bend at their points, which are splines."""
+    room()
+    curves = bpy.data.hair_curves.new("Hair")
+    curves.add_curves([4] * 40)
+    radius = curves.attributes.get("radius") or curves.attributes.new("radius", "FLOAT", "POINT")
+    for i in range(40):
+        x = i * 0.1 - 2.0
+        for k, (along, up) in enumerate(((0.0, 0.0), (0.5, 0.3), (-0.4, 0.7), (0.3, 1.1))):
+            # From beneath the floor: Cycles' strands are open at their ends.
+            curves.points[4 * i + k].position = (x + 0.3 * along, -1.5 + along, up - 0.2)
+            radius.data[4 * i + k].value = 0.02
+    add("Hair", curves)
+    bpy.context.scene.cycles_curves.shape = "THICK"
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
 def holdout():
     """A hole in the picture by an object, one by a material, and one that only lights the others."""
     room()

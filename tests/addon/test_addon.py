@@ -50,7 +50,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured", "points",
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
              "sky_preetham", "holdout", "thin", "rough_diffuse", "glossy", "stretched", "coated", "cloth", "mixed_shaders",
-             "leaf", "red_film", "glow", "catcher"]
+             "leaf", "red_film", "glow", "catcher", "hair", "hair_curves_bent", "particle_fur", "particle_instances"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
     paths, _ = blender.run("side_by_side", name, tmp_path, 64, 48)
@@ -66,6 +66,21 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
         # The noise of the two means: that of differences between pixels, which edges make no smaller.
         noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
         assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise, (name, layer)
+
+
+def test_particle_hair_has_the_shape_of_cycles(blender, tmp_path):
+    """Taper, shape, closed tips, curls and children: where the hair is, whatever light falls on it."""
+    paths, _ = blender.run("side_by_side", "particle_hair", tmp_path, 64, 96)
+    cycles, ours = [read(path) for path in paths]
+    for layer, short, channels in (("Diffuse Color", "DiffCol", "RGB"), ("Depth", "Depth", "Z")):
+        for c in channels:
+            expected = cycles.get(f"ViewLayer.{layer}.{c}", cycles.get(f"ViewLayer.{short}.{c}"))
+            found = ours[f"ViewLayer.{layer}.{c}"]
+            # The straight pieces of a bend lie up to a twentieth of the radius inside of it.
+            noise = np.std(found - expected) / np.sqrt(expected.size)
+            assert abs(found.mean() - expected.mean()) <= 0.0005 * expected.mean() + 4.0 * noise, (layer, c)
+            # Pixel by pixel, too: within the noise of edges nearly everywhere.
+            assert np.mean(np.abs(found - expected) > 0.1 * expected.max()) < 0.05, (layer, c)
 
 
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
@@ -98,11 +113,60 @@ def test_an_empty_scene_is_its_world(blender, tmp_path):
     assert np.ptp(combined) < 1e-6 and combined.mean() > 0.0
 
 
-def test_bad_input_is_told_and_the_rest_is_rendered(blender, tmp_path):
-    path, output = blender.run("bad_input", tmp_path)
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("missing_texture", "/no/such/wood.png"),
+        ("missing_library", "library.blend is not there, or lacks what is linked from it; left out: Linked"),
+        ("unknown_node", "ShaderNodeBevel"),
+        ("mesh_with_nan", "not finite"),
+        ("empty_slots", ""),
+    ],
+)
+def test_bad_input_is_told_and_the_rest_is_rendered(blender, tmp_path, kind, words):
+    path, output = blender.run("bad_input", kind, tmp_path)
     assert read(path)["ViewLayer.Combined.R"].mean() > 0.01
-    for words in ("/no/such/wood.png", "not finite", "ShaderNodeBevel"):
-        assert words in output, output[-2000:]
+    assert words in output and "Traceback" not in output, output[-2000:]
+    assert ("Warning" in output) == bool(words), output[-2000:]
+
+
+def test_only_what_changed_crosses_for_the_viewport(blender, tmp_path):
+    """Placements and the small document always cross; meshes, materials and images only where they changed."""
+    answer, _ = blender.run("viewport_edits", tmp_path)
+    heavy = {name: [call for call in calls if call[0] in {"set_mesh", "set_rounds", "set_material", "set_image_pixels"}]
+             for name, (calls, _) in answer.items()}
+    assert sorted(call[0] for call in heavy["first"]) == ["set_image_pixels"] + ["set_material"] * 2 + ["set_mesh"] * 2
+    assert heavy["move"] == []
+    assert [call[0] for call in heavy["color"]] == ["set_material"]
+    assert "set_image_pixels" in [call[0] for call in heavy["paint"]]
+    assert not any(call[0] == "set_mesh" for call in heavy["color"] + heavy["paint"])
+    assert heavy["reshape"] == [["set_mesh", "Cube"]]
+    assert heavy["delete"] == [] and any(call[0] == "remove_shape" for call in answer["delete"][0])
+    means = [picture for _, picture in answer.values()]
+    for before, after in zip(means, means[1:]):
+        assert np.abs(np.subtract(after, before)).max() > 1e-3, means
+    red, green, _ = np.subtract(means[2], means[1])
+    assert red > green
+
+
+def test_a_world_by_the_camera_is_that_of_each_view(blender, tmp_path):
+    first, looked, expected = blender.run("viewport_window", tmp_path)[0]
+    assert np.allclose(looked, expected, rtol=1e-5)
+    assert np.abs(np.subtract(first, looked)).max() > 0.01
+
+
+def test_panels_are_those_of_cycles_where_they_hold(blender):
+    ours = blender.run("panels_of", "PENUMBRA")[0]
+    assert {"CYCLES_MATERIAL_PT_surface", "CYCLES_PT_context_material", "CYCLES_MATERIAL_PT_preview", "CYCLES_WORLD_PT_surface",
+            "PENUMBRA_PT_sampling_render", "PENUMBRA_PT_passes_shadow", "CYCLES_OBJECT_PT_visibility"} <= set(ours["mesh"])
+    assert {"CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_nodes", "CYCLES_LIGHT_PT_preview"} <= set(ours["lamp"])
+    # Nothing twice, and nothing that means nothing here.
+    for shown in ours.values():
+        assert not {"DATA_PT_light", "MATERIAL_PT_preview", "CYCLES_RENDER_PT_sampling", "CYCLES_MATERIAL_PT_volume"} & set(shown)
+    # For Cycles all is as it was.
+    theirs = blender.run("panels_of", "CYCLES")[0]
+    assert "CYCLES_RENDER_PT_sampling_render" in theirs["mesh"] and "CYCLES_LIGHT_PT_light" in theirs["lamp"]
+    assert not any(name.startswith("PENUMBRA_") for shown in theirs.values() for name in shown)
 
 
 def test_a_border_is_a_part_of_the_picture(blender, tmp_path):

@@ -18,7 +18,7 @@ fn made(kind: LightKind, transform: DAffine3, images: &[ImageDesc]) -> (Option<A
     builder.look([0.0; 3], [0.0, -1.0, 0.0], 1.0);
     // So that render space is the world's.
     builder.desc.cameras[0].transform.translation = DVec3::ZERO;
-    builder.desc.images = images.to_vec();
+    builder.desc.images = images.iter().cloned().map(Into::into).collect();
     builder.light(kind, transform);
     let view = View { camera: None, size: Some([4, 4]) };
     let prepared = prepare(builder.desc, &view, &settings("combined", 1)).unwrap();

@@ -97,7 +97,7 @@ def _properties(node, context):
         elif kind == "Text":
             data[name] = value.as_string()
         elif kind == "Object":
-            data[name] = [list(map(float, row)) for row in value.matrix_world]
+            data[name] = context.object_matrix(value)
         else:
             value = plain(value)
             if value is not None:

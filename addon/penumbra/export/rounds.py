@@ -23,5 +23,5 @@ def hand_over(scene, key, data):
         offsets = np.empty(len(data.curve_offset_data), np.int32)
         data.curve_offset_data.foreach_get("value", offsets)
         ends = offsets[1:].astype(np.uint32)
-    scene.set_rounds(key, data.name, positions, radii, ends)
+    scene.set_rounds(key, data.name, positions, radii, ends, True)
     return True

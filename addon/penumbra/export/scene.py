@@ -1,17 +1,18 @@
 """The depsgraph, walked once."""
 
 import json
-import os
 
 import bpy
 import numpy as np
 
-from . import camera, lights, mesh, nodes, rounds
+from . import camera, images, lights, mesh, nodes, particles, rounds
 
 # Types of objects that evaluate to a mesh.
 _MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 # Hair curves and point clouds, which are strands and balls.
 _ROUNDS = {"CURVES", "POINTCLOUD"}
+# Keys have 63 bits.
+_KEY = 0x7FFF_FFFF_FFFF_FFFF
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
@@ -22,23 +23,47 @@ class Exporter:
         self.scene = scene
         self.images = {}
         self.warnings = []
+        # Keys of the shapes that the engine has, and of the hair of each object.
         self._meshes = set()
+        self._hair = {}
+        # Keys of the materials that the engine has and that nothing but an edit of theirs makes others of.
+        self._known_materials = set()
+        self._moves = False
 
     def update(self, depsgraph, size, space):
         """Hands over what changed since the last time, for a viewport of `space`."""
         for update in depsgraph.updates:
-            if update.is_updated_geometry:
-                data = update.id.data if isinstance(update.id, bpy.types.Object) else update.id
-                if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
-                    self._meshes.discard(_key(data))
+            self._forget(update)
         self.export(depsgraph, size, space=space)
         for key in self._meshes - self._used:
             self.scene.remove_shape(key)
         self._meshes &= self._used
 
+    def _forget(self, update):
+        """What an edit makes another of is handed over again."""
+        edited = update.id
+        if update.is_updated_geometry:
+            data = edited.data if isinstance(edited, bpy.types.Object) else edited
+            if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
+                self._meshes.discard(_key(data))
+            if isinstance(edited, bpy.types.Object):
+                self._meshes -= self._hair.pop(edited.name_full, set())
+        if isinstance(edited, bpy.types.Material):
+            self._known_materials.discard(edited.original.session_uid)
+        elif isinstance(edited, bpy.types.Image):
+            # Sequences have one name for each of their files.
+            own = edited.name_full
+            for name in [name for name in self.images if name == own or name.startswith(f"{own} ")]:
+                del self.images[name]
+            self._known_materials.clear()
+        elif isinstance(edited, bpy.types.NodeTree) and not edited.is_embedded_data:
+            # A group is part of any number of materials.
+            self._known_materials.clear()
+
     def export(self, depsgraph, size, camera_object=None, space=None):
         """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows."""
         self._layer = depsgraph.view_layer
+        self._render = depsgraph.mode == "RENDER"
         self._materials, self._material_index = [], {}
         self._objects, self._object_index = [], {}
         self._lights = []
@@ -47,17 +72,20 @@ class Exporter:
         of_instance, matrices, random_ids = [], [], []
         for instance in depsgraph.object_instances:
             obj = instance.object
-            if not instance.show_self or not _shown(instance, space):
+            if not _shown(instance, space):
                 continue
-            if obj.type == "LIGHT":
+            found = []
+            if instance.show_self and obj.type == "LIGHT":
                 self._lights.append(lights.lamp(instance, self))
                 self._links.append((self._lights[-1], obj))
-            elif obj.type in _MESHES or obj.type in _ROUNDS:
-                index = self._object(obj, instance)
-                if index is not None:
-                    of_instance.append(index)
-                    matrices.append([x for row in instance.matrix_world for x in row])
-                    random_ids.append(instance.random_id & 0xFFFFFFFF if instance.is_instance else 0)
+            elif instance.show_self and (obj.type in _MESHES or obj.type in _ROUNDS):
+                found += self._object(obj)
+            if instance.show_particles and obj.type == "MESH" and obj.particle_systems:
+                found += self._strands(instance.instance_object if instance.is_instance else obj)
+            for index in found:
+                of_instance.append(index)
+                matrices.append([x for row in instance.matrix_world for x in row])
+                random_ids.append(instance.random_id & 0xFFFFFFFF if instance.is_instance else 0)
         for data, obj in self._links:
             self._link(data, obj)
         scene = depsgraph.scene_eval
@@ -68,11 +96,12 @@ class Exporter:
             "camera": camera.camera(camera_object or scene.camera, scene),
             "world": lights.world(scene.world, self),
             "lights": self._lights,
-            "materials": self._materials,
             "images": self.images,
             "objects": self._objects,
         }
         self.scene.set_document(self._json(document))
+        self.scene.set_materials(self._materials)
+        self._known_materials &= set(self._materials)
         matrices = np.asarray(matrices, np.float32).reshape(-1)
         self.scene.set_instances(np.asarray(of_instance, np.uint32), matrices, np.asarray(random_ids, np.uint32))
 
@@ -84,34 +113,63 @@ class Exporter:
             self.warnings.append("some properties are not finite numbers; 0 is used for them")
             return json.dumps(_finite(document))
 
-    def _object(self, obj, instance):
-        """Index of the object's record; None for one without a shape."""
+    def _object(self, obj):
+        """Index of the object's record; nothing for one without a shape."""
         # Not by the object's address: curves, texts and metaballs come as meshes of one passing object.
         key = (obj.name_full, obj.data.as_pointer())
         if key in self._object_index:
             return self._object_index[key]
         shape = self._shape(obj)
-        index = None
+        found = []
         if shape is not None:
-            top = obj
-            while top.parent is not None:
-                top = top.parent
-            index = len(self._objects)
-            self._objects.append({
-                "name": obj.name,
-                "asset": top.name,
-                "mesh": shape,
-                "materials": [self._material(slot.material) for slot in obj.material_slots],
-                "pass_index": obj.pass_index,
-                "color": list(obj.color),
-                "visibility": {**self.visibility(obj), **self._seen_by_camera(obj)},
-                "holdout": self._layer_says("holdout_get", obj),
-                "shadow_catcher": obj.is_shadow_catcher,
-                "lightgroup": obj.lightgroup,
-            })
-            self._links.append((self._objects[-1], obj))
-        self._object_index[key] = index
-        return index
+            found.append(self._record(obj, shape, [slot.material for slot in obj.material_slots]))
+        self._object_index[key] = found
+        return found
+
+    def _strands(self, obj):
+        """Indices of the records of an object's hair, one for each particle system that has some."""
+        key = (obj.name_full, "hair")
+        if key not in self._object_index:
+            found = self._object_index[key] = []
+            for modifier, slot in particles.systems(obj, self._render):
+                shape = self._hair_of(obj, modifier)
+                if shape is not None:
+                    slots = obj.material_slots
+                    # A slot that is not there is the last one.
+                    material = slots[min(max(slot, 0), len(slots) - 1)].material if slots else None
+                    found.append(self._record(obj, shape, [material]))
+        return self._object_index[key]
+
+    def _hair_of(self, obj, modifier):
+        """Hands over the hair of a particle system once; returns its key, or None where there is none."""
+        key = hash((obj.name_full, modifier.name, self._render)) & _KEY
+        self._used.add(key)
+        if key not in self._meshes:
+            if not particles.hand_over(self.scene, key, f"{obj.name}, {modifier.name}", obj, modifier, self._render):
+                return None
+            self._meshes.add(key)
+            self._hair.setdefault(obj.name_full, set()).add(key)
+        return key
+
+    def _record(self, obj, shape, materials):
+        """Says of an object with one of its shapes what it is; returns the record's index."""
+        top = obj
+        while top.parent is not None:
+            top = top.parent
+        self._objects.append({
+            "name": obj.name,
+            "asset": top.name,
+            "mesh": shape,
+            "materials": [self._material(material) for material in materials],
+            "pass_index": obj.pass_index,
+            "color": list(obj.color),
+            "visibility": {**self.visibility(obj), **self._seen_by_camera(obj)},
+            "holdout": self._layer_says("holdout_get", obj),
+            "shadow_catcher": obj.is_shadow_catcher,
+            "lightgroup": obj.lightgroup,
+        })
+        self._links.append((self._objects[-1], obj))
+        return len(self._objects) - 1
 
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
@@ -141,18 +199,26 @@ class Exporter:
     def _material(self, material):
         if material is None:
             return None
-        key = material.as_pointer()
+        key = material.original.session_uid
         if key not in self._material_index:
-            data = {
-                "name": material.name,
-                "pass_index": material.pass_index,
-                "diffuse_color": list(material.diffuse_color),
-            }
-            if material.node_tree is not None and material.use_nodes:
-                data["nodes"] = nodes.dump(material.node_tree, self)
+            if key not in self._known_materials:
+                self._hand_over_material(key, material)
             self._material_index[key] = len(self._materials)
-            self._materials.append(data)
+            self._materials.append(key)
         return self._material_index[key]
+
+    def _hand_over_material(self, key, material):
+        data = {
+            "name": material.name,
+            "pass_index": material.pass_index,
+            "diffuse_color": list(material.diffuse_color),
+        }
+        self._moves = False
+        if material.node_tree is not None and material.use_nodes:
+            data["nodes"] = nodes.dump(material.node_tree, self)
+        self.scene.set_material(key, self._json(data))
+        if not self._moves:
+            self._known_materials.add(key)
 
     def visibility(self, obj):
         """Which rays see an object."""
@@ -178,11 +244,13 @@ class Exporter:
                 data[name] = self._link_set(collection)
 
     def _link_set(self, collection):
-        names = {data["name"]: i for i, data in enumerate(self._objects)}
+        names = {}
+        for i, data in enumerate(self._objects):
+            names.setdefault(data["name"], []).append(i)
         included, excluded = set(), set()
 
         def add(objects, state):
-            found = {names[obj.name] for obj in objects if obj.name in names}
+            found = {i for obj in objects for i in names.get(obj.name, ())}
             (included if state == "INCLUDE" else excluded).update(found)
 
         for item, obj in zip(collection.collection_objects, collection.objects):
@@ -195,37 +263,19 @@ class Exporter:
 
     def image(self, image, user):
         """Takes in an image; returns the name that nodes know it by."""
-        path = ""
-        if image.source in {"FILE", "SEQUENCE", "MOVIE", "TILED"}:
-            raw = image.filepath_from_user(image_user=user) if image.source == "SEQUENCE" and user else image.filepath_raw
-            path = os.path.normpath(bpy.path.abspath(raw, library=image.library)) if raw else ""
+        path = images.path_of(image, user)
         name = f"{image.name_full} {path}" if image.source == "SEQUENCE" else image.name_full
-        if name in self.images:
-            return name
-        in_memory = image.packed_file is not None or image.source == "GENERATED" or image.is_dirty
-        self.images[name] = {
-            "path": path,
-            "colorspace": image.colorspace_settings.name,
-            "alpha_mode": image.alpha_mode,
-            "tiles": [tile.number for tile in image.tiles] if image.source == "TILED" else [],
-            "in_memory": in_memory,
-        }
-        if image.packed_file is not None and not image.is_dirty:
-            self.scene.set_image_bytes(name, image.packed_file.data)
-        elif in_memory:
-            width, height = image.size
-            pixels = np.empty(width * height * 4, np.float32)
-            if image.channels == 4:
-                image.pixels.foreach_get(pixels)
-            else:
-                raw = np.empty(width * height * image.channels, np.float32)
-                image.pixels.foreach_get(raw)
-                raw = raw.reshape(-1, image.channels)
-                pixels = pixels.reshape(-1, 4)
-                pixels[:] = 1.0
-                pixels[:, :3] = raw[:, :3] if image.channels >= 3 else raw[:, :1]
-            self.scene.set_image_pixels(name, width, height, pixels.reshape(-1), image.is_float)
+        self._moves |= image.source in {"SEQUENCE", "MOVIE"}
+        if name not in self.images:
+            self.images[name] = images.describe(image, path)
+            if self.images[name]["in_memory"]:
+                images.hand_over(self.scene, name, image)
         return name
+
+    def object_matrix(self, obj):
+        """World matrix of an object that a node refers to."""
+        self._moves = True
+        return [list(map(float, row)) for row in obj.matrix_world]
 
 
 def _key(data):
@@ -233,7 +283,7 @@ def _key(data):
     counts = (len(data.vertices), len(data.loops)) if isinstance(data, bpy.types.Mesh) else ()
     if isinstance(data, (bpy.types.Curves, bpy.types.PointCloud)):
         counts = (len(data.points),)
-    return hash((data.as_pointer(), data.name_full, *counts)) & 0x7FFF_FFFF_FFFF_FFFF
+    return hash((data.as_pointer(), data.name_full, *counts)) & _KEY
 
 
 def _shown(instance, space):

@@ -116,7 +116,8 @@ class Stamps(Exporter):
         path = self._file(name, ".exr" if is_float else ".png")
         copy = bpy.data.images.new("penumbra", width, height, alpha=True, float_buffer=is_float)
         try:
-            copy.colorspace_settings.name = self.images[name]["colorspace"]
+            # Floats are linear whatever the image says, and are saved as they are.
+            copy.colorspace_settings.name = "Non-Color" if is_float else self.images[name]["colorspace"]
             copy.alpha_mode = self.images[name]["alpha_mode"]
             copy.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32))
             copy.file_format = "OPEN_EXR" if is_float else "PNG"

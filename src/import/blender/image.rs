@@ -7,6 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::document::ImageData;
+use super::kept::{KeptImages, Version};
 use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::image::{decode_image, load_image};
@@ -29,6 +30,15 @@ pub enum ImageSource {
     },
 }
 
+/// An image in memory, and how many were handed over before it.
+#[derive(Clone, Debug)]
+pub struct InMemory {
+    /// The image.
+    pub source: ImageSource,
+    /// Another one for everything that is handed over.
+    pub revision: u64,
+}
+
 /// How a node looks at an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
@@ -41,7 +51,7 @@ pub struct Look {
 /// The images that nodes ask for; they are decoded by [`Images::finish`].
 pub struct Images<'a> {
     data: &'a HashMap<String, ImageData>,
-    in_memory: &'a HashMap<String, ImageSource>,
+    in_memory: &'a HashMap<String, InMemory>,
     place: &'a Place,
     version: [u32; 3],
     /// Name and tile of each image asked for.
@@ -53,7 +63,7 @@ impl<'a> Images<'a> {
     /// No image is asked for yet.
     pub fn new(
         data: &'a HashMap<String, ImageData>,
-        in_memory: &'a HashMap<String, ImageSource>,
+        in_memory: &'a HashMap<String, InMemory>,
         place: &'a Place,
         version: [u32; 3],
     ) -> Self {
@@ -97,22 +107,44 @@ impl<'a> Images<'a> {
         self.textures[texture as usize].image
     }
 
-    /// All images and textures that were asked for. One that can't be read is told, and is magenta as
-    /// in Cycles.
-    pub fn finish(self, warnings: &mut Warnings) -> (Vec<ImageDesc>, Vec<TextureDesc>) {
-        let decoded: Vec<Result<ImageDesc>> =
-            self.wanted.par_iter().map(|(name, tile)| self.decode(name, *tile)).collect();
+    /// All images and textures that were asked for, those of `kept` as they are there. One that can't be
+    /// read is told, and is magenta as in Cycles.
+    pub fn finish(self, kept: &mut KeptImages, warnings: &mut Warnings) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
+        let decode = |key: &(String, Option<u32>)| {
+            let version = self.version_of(&key.0, key.1);
+            if let Some(known) = version.as_ref().and_then(|version| kept.get(key, version)) {
+                return (version, Ok(known));
+            }
+            (version, self.decode(&key.0, key.1).map(Arc::new))
+        };
+        let decoded: Vec<(Option<Version>, Result<Arc<ImageDesc>>)> = self.wanted.par_iter().map(decode).collect();
+        let good = self.wanted.iter().zip(&decoded).filter_map(|(key, (version, image))| {
+            let (Some(version), Ok(image)) = (version, image) else { return None };
+            Some((key.clone(), version.clone(), image.clone()))
+        });
+        kept.replace(good);
         let images = decoded
             .into_iter()
             .zip(&self.wanted)
-            .map(|(image, (name, _))| {
+            .map(|((_, image), (name, _))| {
                 image.unwrap_or_else(|error| {
                     warnings.push(&self.place.at(name), format!("{error}: magenta stands for it"));
-                    magenta(name, self.place)
+                    magenta(name, self.place).into()
                 })
             })
             .collect();
         (images, self.textures)
+    }
+
+    /// What the image is now; `None` for one that is not there.
+    fn version_of(&self, name: &str, tile: Option<u32>) -> Option<Version> {
+        let data = &self.data[name];
+        let color_space = color_space(&data.colorspace);
+        if data.in_memory {
+            let revision = self.in_memory.get(name)?.revision;
+            return Some(Version::Memory { revision, color_space });
+        }
+        Version::of_file(&path_of(data, tile), color_space)
     }
 
     fn decode(&self, name: &str, tile: Option<u32>) -> Result<ImageDesc> {
@@ -121,13 +153,13 @@ impl<'a> Images<'a> {
         let place = self.place.at(name);
         let name: Arc<str> = name.into();
         if !data.in_memory {
-            let path = tile.map_or_else(|| data.path.clone(), |tile| data.path.replace("<UDIM>", &tile.to_string()));
+            let path = path_of(data, tile);
             if path.is_empty() {
                 return Err(Error::invalid(&place, "the image has neither a file nor pixels"));
             }
             return load_image(Path::new(&path), color_space);
         }
-        match self.in_memory.get(&*name) {
+        match self.in_memory.get(&*name).map(|image| &image.source) {
             None => Err(Error::invalid(&place, "the image's pixels were not handed over")),
             Some(ImageSource::Encoded(bytes)) => {
                 let hint = Path::new(&data.path).extension().and_then(|extension| extension.to_str());
@@ -146,6 +178,11 @@ impl<'a> Images<'a> {
             }
         }
     }
+}
+
+/// Path of the image, or of one tile of it.
+fn path_of(data: &ImageData, tile: Option<u32>) -> String {
+    tile.map_or_else(|| data.path.clone(), |tile| data.path.replace("<UDIM>", &tile.to_string()))
 }
 
 /// The transfer function of a colour space of Blender's configuration.
@@ -186,7 +223,7 @@ mod tests {
             values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0],
             linear: true,
         };
-        let in_memory = [("a".to_owned(), pixels)].into();
+        let in_memory = [("a".to_owned(), InMemory { source: pixels, revision: 0 })].into();
         let place = Place::default();
         let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         assert_eq!(images.texture("a", None, look()), Some(0));
@@ -195,7 +232,7 @@ mod tests {
         assert_eq!(images.texture("a", None, Look { wrap: Wrap::Clamp, ..look() }), Some(2));
         assert_eq!(images.texture("c", None, look()), None);
         let mut warnings = Warnings::new();
-        let (images, textures) = images.finish(&mut warnings);
+        let (images, textures) = images.finish(&mut KeptImages::default(), &mut warnings);
         assert_eq!(textures.iter().map(|t| t.image).collect::<Vec<_>>(), [0, 1, 0]);
         // The top row comes first.
         assert_eq!(images[0].pixels.get(0), 1.0);
@@ -212,7 +249,28 @@ mod tests {
         let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         images.image("wood", None);
         let mut warnings = Warnings::new();
-        images.finish(&mut warnings);
+        images.finish(&mut KeptImages::default(), &mut warnings);
         assert!(warnings.iter().next().unwrap().what.contains("/no/wood.png"));
+    }
+
+    #[test]
+    fn an_image_is_decoded_again_only_where_it_is_another() {
+        let data: HashMap<String, ImageData> =
+            [("a".to_owned(), ImageData { in_memory: true, ..ImageData::default() })].into();
+        let source = |value: f32| ImageSource::Pixels { width: 1, height: 1, values: vec![value; 4], linear: true };
+        let place = Place::default();
+        let mut kept = KeptImages::default();
+        kept.turn_on();
+        let mut read = |value: f32, revision: u64| {
+            let in_memory = [("a".to_owned(), InMemory { source: source(value), revision })].into();
+            let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
+            images.image("a", None);
+            images.finish(&mut kept, &mut Warnings::new()).0.remove(0)
+        };
+        let first = read(0.25, 0);
+        assert!(Arc::ptr_eq(&first, &read(0.25, 0)));
+        let second = read(0.75, 1);
+        assert!(!Arc::ptr_eq(&first, &second));
+        assert_eq!(second.pixels.get(0), 0.75);
     }
 }

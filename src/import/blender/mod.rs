@@ -8,12 +8,14 @@
 mod camera;
 mod document;
 mod image;
+mod kept;
 mod layers;
 mod light;
 mod material;
 mod mesh;
 mod nodes;
 mod random;
+mod smooth;
 mod rounds;
 mod scene;
 mod stamp;
@@ -27,6 +29,7 @@ pub use document::{
 };
 pub use image::ImageSource;
 pub use mesh::{LayerArray, MeshArrays};
+pub use rounds::Ends;
 pub use nodes::{NodeData, SocketData, TreeData, Value};
 pub use scene::BlenderScene;
 pub(super) use stamp::{Moment, Stamp};

@@ -1,10 +1,55 @@
 //! Hair curves and point clouds, from the arrays that Blender keeps them in.
 
+use std::sync::Arc;
+
+use super::mesh::LayerArray;
+use super::smooth;
 use crate::desc::{RoundsDesc, Strand};
 use crate::error::{Error, Place, Result, Warnings};
 
-/// Strands of `positions` (three numbers each) and `radii`; `ends` are the points behind the last one of each
-/// strand, in order, and none for points that stand alone.
+/// Where strands end, and what they are between their points.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ends<'a> {
+    /// The points behind the last one of each strand, in order; none for points that stand alone.
+    pub points: &'a [u32],
+    /// Catmull-Rom splines, as Cycles has them; else straight.
+    pub smooth: bool,
+}
+
+/// Strands or points, and what their UV sets are called.
+#[derive(Debug)]
+pub struct NamedRounds {
+    rounds: Arc<RoundsDesc>,
+    uv_names: Vec<Arc<str>>,
+    /// As it was asked for last, and with which maps.
+    dressed: Option<(Vec<String>, Arc<RoundsDesc>)>,
+}
+
+impl NamedRounds {
+    /// With the map to render with as set 0 and those of `uv_maps` after it; the same one as long as they are.
+    pub fn dressed(&mut self, uv_maps: &[String]) -> Arc<RoundsDesc> {
+        if self.uv_names.is_empty() || uv_maps.is_empty() {
+            return self.rounds.clone();
+        }
+        if let Some((known, rounds)) = &self.dressed
+            && known == uv_maps
+        {
+            return rounds.clone();
+        }
+        let named = |name: &String| {
+            let index = self.uv_names.iter().position(|known| **known == **name);
+            // 0 everywhere for a map that the hair lacks, as in Cycles.
+            index.map_or_else(|| vec![[0.0, 1.0]; self.rounds.points.len()], |index| self.rounds.uvs[index].clone())
+        };
+        let first = self.rounds.uvs[0].clone();
+        let uvs = std::iter::once(first).chain(uv_maps.iter().map(named)).collect();
+        let rounds = Arc::new(RoundsDesc { uvs, ..RoundsDesc::clone(&self.rounds) });
+        self.dressed = Some((uv_maps.to_vec(), rounds.clone()));
+        rounds
+    }
+}
+
+/// Strands of `positions` (three numbers each) and `radii`, with UV maps that hold one pair for each strand.
 ///
 /// # Errors
 /// Arrays whose lengths don't fit together. Strands and points that are not finite are told and left out.
@@ -13,9 +58,11 @@ pub fn rounds(
     place: &Place,
     positions: &[f32],
     radii: &[f32],
-    ends: &[u32],
+    ends: Ends<'_>,
+    uvs: &[LayerArray<'_>],
     warnings: &mut Warnings,
-) -> Result<RoundsDesc> {
+) -> Result<NamedRounds> {
+    let Ends { points: ends, smooth } = ends;
     let (points, rest) = positions.as_chunks::<3>();
     let broken = |what: String| Error::invalid(place, format!("\"{name}\" {what}"));
     if !rest.is_empty() || radii.len() != points.len() {
@@ -24,6 +71,10 @@ pub fn rounds(
     let grows = ends.windows(2).all(|pair| pair[0] <= pair[1]);
     if !grows || ends.last().is_some_and(|&end| end as usize != points.len()) {
         return Err(broken(format!("has curves that do not end at its {} points", points.len())));
+    }
+    if let Some(layer) = uvs.iter().find(|layer| layer.values.len() != 2 * ends.len()) {
+        let given = layer.values.len() / 2;
+        return Err(broken(format!("has a UV map \"{}\" of {given} pairs for {} strands", layer.name, ends.len())));
     }
     let usable = |i: usize| points[i].iter().all(|x| x.is_finite()) && radii[i].is_finite();
     let alone: Vec<u32>;
@@ -35,8 +86,9 @@ pub fn rounds(
         ends => ends,
     };
     let mut desc = RoundsDesc { name: name.into(), place: place.clone(), ..RoundsDesc::default() };
+    desc.uvs = vec![Vec::new(); uvs.len()];
     let (mut start, mut left_out) = (0, 0);
-    for &end in ranges {
+    for (strand, &end) in ranges.iter().enumerate() {
         let range = start..end as usize;
         start = end as usize;
         if range.is_empty() {
@@ -46,8 +98,16 @@ pub fn rounds(
             left_out += 1;
             continue;
         }
-        desc.points.extend_from_slice(&points[range.clone()]);
-        desc.radii.extend(radii[range].iter().map(|radius| radius.max(0.0)));
+        if smooth {
+            smooth::flatten(&points[range.clone()], &radii[range], &mut desc.points, &mut desc.radii);
+        } else {
+            desc.points.extend_from_slice(&points[range.clone()]);
+            desc.radii.extend(radii[range].iter().map(|radius| radius.max(0.0)));
+        }
+        for (set, layer) in desc.uvs.iter_mut().zip(uvs) {
+            // Blender's v grows upwards.
+            set.resize(desc.points.len(), [layer.values[2 * strand], 1.0 - layer.values[2 * strand + 1]]);
+        }
         if !ends.is_empty() {
             desc.strands.push(Strand { end: desc.points.len() as u32, closed: false });
         }
@@ -55,17 +115,19 @@ pub fn rounds(
     if left_out > 0 {
         warnings.push(place, format!("{left_out} strands or points of \"{name}\" are not finite; they are left out"));
     }
-    Ok(desc)
+    let uv_names = uvs.iter().map(|layer| layer.name.into()).collect();
+    Ok(NamedRounds { rounds: desc.into(), uv_names, dressed: None })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn made(positions: &[f32], radii: &[f32], ends: &[u32]) -> (Result<RoundsDesc>, usize) {
+    fn made(positions: &[f32], radii: &[f32], ends: &[u32]) -> (Result<Arc<RoundsDesc>>, usize) {
         let mut warnings = Warnings::new();
-        let desc = rounds("Fur", &Place::default(), positions, radii, ends, &mut warnings);
-        (desc, warnings.len())
+        let ends = Ends { points: ends, smooth: false };
+        let made = rounds("Fur", &Place::default(), positions, radii, ends, &[], &mut warnings);
+        (made.map(|mut made| made.dressed(&[])), warnings.len())
     }
 
     #[test]
@@ -87,9 +149,26 @@ mod tests {
         positions[4] = f32::NAN;
         let (desc, said) = made(&positions, &[0.1, 0.1, -1.0, 0.1], &[2, 4]);
         let desc = desc.unwrap();
-        assert_eq!((desc.points.len(), desc.radii, desc.strands.len(), said), (2, vec![0.0, 0.1], 1, 1));
+        assert_eq!((desc.points.len(), &desc.radii, desc.strands.len(), said), (2, &vec![0.0, 0.1], 1, 1));
         let (desc, said) = made(&positions, &[0.1; 4], &[]);
         assert_eq!((desc.unwrap().points.len(), said), (3, 1));
+    }
+
+    #[test]
+    fn a_strand_has_one_place_on_each_map() {
+        let positions: Vec<f32> = (0..15).map(|i| i as f32).collect();
+        let ends = Ends { points: &[2, 5], smooth: false };
+        let layer = |name, values| LayerArray { name, values };
+        let maps = [layer("first", &[0.1, 0.2, 0.3, 0.4][..]), layer("second", &[0.5, 0.6, 0.7, 0.8])];
+        let mut warnings = Warnings::new();
+        let mut made = rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, &maps, &mut warnings).unwrap();
+        let named = made.dressed(&["second".into(), "third".into()]);
+        assert_eq!(named.uvs[0], [[0.1, 0.8], [0.1, 0.8], [0.3, 0.6], [0.3, 0.6], [0.3, 0.6]]);
+        assert_eq!(named.uvs[1][4], [0.7, 1.0 - 0.8]);
+        assert_eq!(named.uvs[2], [[0.0, 1.0]; 5]);
+        assert!(Arc::ptr_eq(&named, &made.dressed(&["second".into(), "third".into()])));
+        let short = [layer("first", &[0.1, 0.2][..])];
+        assert!(rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, &short, &mut warnings).is_err());
     }
 
     #[test]

@@ -1,26 +1,32 @@
 //! A scene of Blender's, kept between renders so that only what changes is handed over again.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::document::Document;
-use super::image::{ImageSource, Images};
+use super::document::{Document, MaterialData};
+use super::image::{ImageSource, Images, InMemory};
+use super::kept::KeptImages;
 use super::layers::UvSets;
 use super::light::LampShader;
 use super::mesh::{self, Dress, LayerArray, MeshArrays, NamedMesh};
 use super::nodes::TreeData;
+use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
 use super::{camera, light, material, nodes, random, rounds, world};
-use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, RoundsDesc, SceneDesc, ShapeRef};
+use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
 /// Everything that the add-on has handed over so far.
 #[derive(Debug, Default)]
 pub struct BlenderScene {
     document: Document,
+    materials: HashMap<u64, Arc<MaterialData>>,
     meshes: HashMap<u64, NamedMesh>,
-    rounds: HashMap<u64, Arc<RoundsDesc>>,
-    images: HashMap<String, ImageSource>,
+    rounds: HashMap<u64, NamedRounds>,
+    images: HashMap<String, InMemory>,
+    /// How many images have been handed over.
+    revisions: u64,
+    kept: KeptImages,
     instances: Vec<Placement>,
     /// What was told of shapes as they came.
     of_shapes: HashMap<u64, Warnings>,
@@ -38,15 +44,44 @@ struct Placement {
 }
 
 impl BlenderScene {
-    /// Takes in all but meshes, images in memory and placements.
+    /// Takes in all but materials, meshes, images in memory and placements.
     ///
     /// # Errors
     /// JSON that is no [`Document`].
     pub fn set_document(&mut self, json: &str) -> Result<()> {
-        self.document = serde_json::from_str(json).map_err(|error| {
-            Error::invalid(&self.place(), format!("the add-on's description doesn't parse: {error}"))
-        })?;
+        let materials = std::mem::take(&mut self.document.materials);
+        self.document = serde_json::from_str(json).map_err(|error| self.unparsable("description", &error))?;
+        self.document.materials = materials;
         Ok(())
+    }
+
+    /// Takes in the material `key`, in place of an earlier one.
+    ///
+    /// # Errors
+    /// JSON that is no [`MaterialData`].
+    pub fn set_material(&mut self, key: u64, json: &str) -> Result<()> {
+        let material = serde_json::from_str(json).map_err(|error| self.unparsable("material", &error))?;
+        self.materials.insert(key, Arc::new(material));
+        Ok(())
+    }
+
+    /// Says which materials the objects' indices mean, and forgets all others.
+    ///
+    /// # Errors
+    /// A key that no material was handed over for.
+    pub fn set_materials(&mut self, keys: &[u64]) -> Result<()> {
+        let known = |key: &u64| {
+            let material = self.materials.get(key).cloned();
+            material.ok_or_else(|| Error::invalid(&self.place(), format!("no material {key} was handed over")))
+        };
+        self.document.materials = keys.iter().map(known).collect::<Result<_>>()?;
+        let used: HashSet<u64> = keys.iter().copied().collect();
+        self.materials.retain(|key, _| used.contains(key));
+        Ok(())
+    }
+
+    fn unparsable(&self, what: &str, error: &serde_json::Error) -> Error {
+        Error::invalid(&self.place(), format!("the add-on's {what} doesn't parse: {error}"))
     }
 
     /// Takes in the mesh that objects name by `key`, in place of an earlier one.
@@ -69,15 +104,23 @@ impl BlenderScene {
         Ok(())
     }
 
-    /// Takes in the strands, or points where `ends` is empty, that objects name by `key`.
+    /// Takes in the strands, or points where none ends, that objects name by `key`.
     ///
     /// # Errors
     /// Arrays that don't fit together; what was there of that key is gone then.
-    pub fn set_rounds(&mut self, key: u64, name: &str, positions: &[f32], radii: &[f32], ends: &[u32]) -> Result<()> {
+    pub fn set_rounds(
+        &mut self,
+        key: u64,
+        name: &str,
+        positions: &[f32],
+        radii: &[f32],
+        ends: Ends<'_>,
+        uvs: &[LayerArray<'_>],
+    ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, &mut warnings)?;
-        self.rounds.insert(key, rounds.into());
+        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, uvs, &mut warnings)?;
+        self.rounds.insert(key, rounds);
         self.of_shapes.insert(key, warnings);
         Ok(())
     }
@@ -89,9 +132,15 @@ impl BlenderScene {
         self.of_shapes.remove(&key);
     }
 
+    /// Keeps decoded images from now on: the scene will be asked for again, after edits.
+    pub fn keep_images(&mut self) {
+        self.kept.turn_on();
+    }
+
     /// Takes in an image that the document says is in memory.
     pub fn set_image(&mut self, name: &str, image: ImageSource) {
-        self.images.insert(name.to_owned(), image);
+        self.images.insert(name.to_owned(), InMemory { source: image, revision: self.revisions });
+        self.revisions += 1;
     }
 
     /// Takes in all placements: object indices, as many matrices of sixteen floats by rows, and the random
@@ -142,7 +191,7 @@ impl BlenderScene {
         let uv_sets = self.uv_sets();
         material::materials(document, &mut images, &uv_sets, &mut desc, warnings);
         self.add_lights(&of_object, &mut desc, &mut images, warnings);
-        (desc.images, desc.textures) = images.finish(warnings);
+        (desc.images, desc.textures) = images.finish(&mut self.kept, warnings);
         Ok(desc)
     }
 
@@ -166,8 +215,8 @@ impl BlenderScene {
                     let shape = if let Some(mesh) = self.meshes.get_mut(&data.mesh) {
                         desc.meshes.push(mesh.dressed(&dress));
                         ShapeRef::Mesh(desc.meshes.len() as u32 - 1)
-                    } else if let Some(rounds) = self.rounds.get(&data.mesh) {
-                        desc.rounds.push(rounds.clone());
+                    } else if let Some(rounds) = self.rounds.get_mut(&data.mesh) {
+                        desc.rounds.push(rounds.dressed(&dress.uv_maps));
                         ShapeRef::Rounds(desc.rounds.len() as u32 - 1)
                     } else {
                         continue;

@@ -7,12 +7,14 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde_json::Value as Json;
 
 use super::document::{CameraData, ImageData, LightData, RenderData, WorldData};
 use super::image::Images;
+use super::kept::KeptImages;
 use super::light::LampShader;
 use super::transform::affine;
 use super::{camera, light, nodes, world};
@@ -135,7 +137,7 @@ impl Stamp {
         lamp: &LightData,
         world: &DAffine3,
         place: &Place,
-        images: &mut Vec<ImageDesc>,
+        images: &mut Vec<Arc<ImageDesc>>,
         warnings: &mut Warnings,
     ) -> Option<LightDesc> {
         let scale = scale(&lamp.matrix, world);
@@ -219,7 +221,7 @@ impl Stamp {
         world: &WorldData,
         turn: DMat3,
         place: &Place,
-        images: &mut Vec<ImageDesc>,
+        images: &mut Vec<Arc<ImageDesc>>,
         warnings: &mut Warnings,
     ) -> Option<LightDesc> {
         let mut made = SceneDesc { place: place.clone(), ..SceneDesc::default() };
@@ -243,7 +245,7 @@ impl Stamp {
     fn with_images<T>(
         &self,
         place: &Place,
-        all: &mut Vec<ImageDesc>,
+        all: &mut Vec<Arc<ImageDesc>>,
         warnings: &mut Warnings,
         read: impl FnOnce(&mut Images<'_>, &mut Warnings) -> T,
     ) -> (T, u32) {
@@ -251,7 +253,7 @@ impl Stamp {
         let mut images = Images::new(&self.images, &in_memory, place, self.blender);
         let result = read(&mut images, warnings);
         let first = all.len() as u32;
-        all.extend(images.finish(warnings).0);
+        all.extend(images.finish(&mut KeptImages::default(), warnings).0);
         (result, first)
     }
 }

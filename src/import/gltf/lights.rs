@@ -187,7 +187,7 @@ impl<'a> Lights<'a> {
             return known.clone();
         }
         let read = self.read_image(source).map(|image| {
-            scene.images.push(image);
+            scene.images.push(image.into());
             scene.images.len() as u32 - 1
         });
         self.images.insert(source.clone(), read.clone());

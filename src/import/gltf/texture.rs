@@ -21,7 +21,7 @@ const NEAREST: u32 = 9728;
 #[derive(Default)]
 pub(super) struct TextureTable {
     /// Decoded images.
-    pub images: Vec<ImageDesc>,
+    pub images: Vec<Arc<ImageDesc>>,
     /// Ways to look them up.
     pub textures: Vec<TextureDesc>,
     /// Index into `textures` by texture of the file and use; `None` for what could not be decoded.
@@ -104,10 +104,10 @@ impl TextureTable {
             if uses.len() == 2 {
                 images.insert((index, false), table.images.len() as u32);
                 let linear = ImageDesc { color_space: ColorSpace::Linear, ..image.clone() };
-                table.images.push(linear);
+                table.images.push(linear.into());
             }
             images.insert((index, uses.contains(&true)), table.images.len() as u32);
-            table.images.push(image);
+            table.images.push(image.into());
         }
         for &(texture, srgb) in used {
             let image = source(reader, texture).ok().and_then(|index| images.get(&(index, srgb)).copied());

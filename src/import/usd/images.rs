@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use openusd::ar::{DefaultResolver, ResolvedPath, Resolver};
 use openusd::sdf::{self, AssetPath};
@@ -64,7 +65,7 @@ impl File {
 #[derive(Default)]
 pub(super) struct Images {
     /// In the order of `SceneDesc::images`.
-    pub images: Vec<ImageDesc>,
+    pub images: Vec<Arc<ImageDesc>>,
     /// Index of a file read as sRGB, and as raw.
     known: HashMap<String, [Option<u32>; 2]>,
     /// Files that are decoded and not used yet, and what is wrong with those that can't be.
@@ -105,7 +106,7 @@ impl Images {
                 if let Some(same) = known[usize::from(!is_srgb(image, space))] {
                     return Ok(same);
                 }
-                image.clone()
+                ImageDesc::clone(image)
             }
             None => match self.decoded.remove(file).unwrap_or_else(|| decode(file)) {
                 Ok(image) => image,
@@ -124,7 +125,7 @@ impl Images {
 
     /// An image that comes from no file, as one that was computed.
     pub fn push(&mut self, image: ImageDesc) -> u32 {
-        self.images.push(image);
+        self.images.push(image.into());
         self.images.len() as u32 - 1
     }
 

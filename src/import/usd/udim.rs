@@ -41,7 +41,7 @@ pub(super) fn picture(
         width: width * columns,
         height: height * rows,
         pixels: empty(&first.pixels, u64::from(width) * u64::from(height) * u64::from(columns * rows), first.channels),
-        ..first.clone()
+        ..ImageDesc::clone(first)
     };
     for ([column, row], index) in read {
         let tile = &images.images[index as usize];

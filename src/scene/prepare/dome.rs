@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::cache::{Cache, DomeParts};
 use super::emissive::Shared;
 use super::mend::Mended;
 use super::texels::texels;
@@ -42,8 +43,30 @@ pub fn prepare(
     image.map(|image| Dome::new(radiance, Some(image)))
 }
 
-/// The dome of shader `shader`; `None` for one that is black all over.
-pub fn shaded(desc: &SceneDesc, light: &LightDesc, shader: u32, shared: &Shared<'_>) -> Option<Dome> {
+/// The dome of shader `shader`, as it was if `cache` has it; `None` for one that is black all over.
+pub fn shaded(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    shader: u32,
+    shared: &Shared<'_>,
+    cache: &mut Cache,
+) -> Option<Dome> {
+    let of = &desc.dome_shaders[shader as usize];
+    if graphs::follows_camera(&of.graph, [of.radiance]) {
+        return made(desc, light, shader, shared);
+    }
+    let parts = || {
+        let looked_up = graphs::looked_up(&of.graph, [of.radiance]).into_iter();
+        let texture = |i: u32| {
+            let texture = &desc.textures[i as usize];
+            (texture.clone(), desc.images[texture.image as usize].clone())
+        };
+        DomeParts { shader: of.clone(), transform: light.transform, textures: looked_up.map(texture).collect() }
+    };
+    cache.dome(parts, || made(desc, light, shader, shared))
+}
+
+fn made(desc: &SceneDesc, light: &LightDesc, shader: u32, shared: &Shared<'_>) -> Option<Dome> {
     let of = &desc.dome_shaders[shader as usize];
     let Shared { domes, textures, camera, origin, .. } = *shared;
     let program = domes[shader as usize].clone();
@@ -96,7 +119,7 @@ mod tests {
             color_space: ColorSpace::Linear,
             pixels: PixelData::F32(pixels.to_vec()),
         };
-        let desc = SceneDesc { images: vec![image], ..SceneDesc::default() };
+        let desc = SceneDesc { images: vec![image.into()], ..SceneDesc::default() };
         let kind = LightKind::Dome { radiance: [radiance.into(); 3], image: Some(0) };
         let light = LightDesc::new("world", Place::default(), DAffine3::IDENTITY, kind);
         let (mut mended, mut warnings) = (Mended::default(), Warnings::new());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::geometry::Geometry;
 use super::materials::Textures;
-use crate::desc::graph::{Graph, Op, Value, ValueId};
+use crate::desc::graph::{Graph, Leaf, Op, Space, Value, ValueId};
 use crate::desc::{self, InstanceDesc, MaterialDesc, MeshDesc, RoundsDesc, SceneDesc, TextureTransform};
 use crate::math::DVec3;
 use crate::scene::Material;
@@ -78,6 +78,19 @@ pub fn looked_up(graph: &Graph, values: impl IntoIterator<Item = ValueId>) -> Ve
     looked_up.collect()
 }
 
+/// True where one of `values` of a graph goes by the camera or by where in the picture something is seen.
+pub fn follows_camera(graph: &Graph, values: impl IntoIterator<Item = ValueId>) -> bool {
+    let needed = graph.needed(values);
+    graph.ops().iter().zip(needed).any(|(op, needed)| {
+        let follows = match op {
+            Op::Leaf(leaf) => matches!(leaf, Leaf::CameraPosition | Leaf::Window),
+            Op::Transform { from, to, .. } => [*from, *to].contains(&Space::Camera),
+            _ => false,
+        };
+        needed && follows
+    })
+}
+
 /// What the programs ask of the meshes and objects of `geometry`; nothing where there is none.
 pub fn asked(desc: &SceneDesc, geometry: &Geometry, materials: &[Material], names: Names) -> Asked {
     if materials.iter().all(|material| material.programs.is_none()) {
@@ -132,5 +145,23 @@ fn of_object(desc: &InstanceDesc, names: &Names) -> OfObject {
         random: finite(desc.info.random),
         index: f64::from(desc.object_index),
         attributes: names.iter().map(find).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::desc::graph::{Function, Math};
+
+    #[test]
+    fn a_graph_follows_the_camera_where_what_is_needed_of_it_does() {
+        let mut graph = Graph::default();
+        let position = graph.leaf(Leaf::Position);
+        let window = graph.leaf(Leaf::Window);
+        let (quantity, from, to) = (crate::desc::graph::Quantity::Vector, Space::World, Space::Camera);
+        let turned = graph.push(Op::Transform { quantity, from, to, value: position });
+        let sum = graph.apply(Function::Math(Math::Add), &[position, window]);
+        assert!(!follows_camera(&graph, [position]));
+        assert!([window, turned, sum].iter().all(|&value| follows_camera(&graph, [value])));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::cache::Cache;
 use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
 use super::links::Links;
@@ -19,6 +20,7 @@ pub fn prepare(
     groups: &[Arc<str>],
     geometry: &mut Geometry,
     shared: &Shared<'_>,
+    cache: &mut Cache,
     warnings: &mut Warnings,
 ) -> Vec<Light> {
     let rules = |of: &LightLinks, visibility: Visibility| Rules {
@@ -35,7 +37,7 @@ pub fn prepare(
     let mut lights = Vec::new();
     for light in desc.lights.iter().chain(extra) {
         let emitter = match light.kind {
-            LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared).map(Into::into),
+            LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared, cache).map(Into::into),
             _ => lamp::prepare(desc, light, shared.origin, warnings),
         };
         if let LightKind::ShadedDome { shader } = light.kind {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::cache::{Cache, ReadyImage};
 use super::graphs;
 use super::mend::Mended;
 use crate::desc::graph::{Function, Graph, Leaf, Value, ValueId};
@@ -34,12 +35,12 @@ pub struct Materials {
 }
 
 /// The materials of `desc`. Texels move out of `desc` into the textures.
-pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warnings) -> Materials {
+pub fn prepare(desc: &mut SceneDesc, settings: &Settings, cache: &mut Cache, warnings: &mut Warnings) -> Materials {
     let mut used = vec![false; desc.materials.len()];
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
-    let images = prepare_images(desc, &used, warnings);
+    let images = prepare_images(desc, &used, cache, warnings);
     let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
     let mut builder = Builder { desc, settings, textures, names: Names::default() };
     let fallback = MaterialDesc::default();
@@ -58,7 +59,12 @@ pub fn prepare(desc: &mut SceneDesc, settings: &Settings, warnings: &mut Warning
 }
 
 /// Pyramids of the images that materials in use and domes look up, in parallel.
-fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) -> Vec<Option<Arc<Image>>> {
+fn prepare_images(
+    desc: &mut SceneDesc,
+    used: &[bool],
+    cache: &mut Cache,
+    warnings: &mut Warnings,
+) -> Vec<Option<Arc<Image>>> {
     let mut wanted = vec![false; desc.images.len()];
     let materials = desc.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material));
     for material in materials {
@@ -77,7 +83,7 @@ fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) 
     for image in desc.lights.iter().filter_map(|light| light.kind.image()) {
         lights[image as usize] = true;
     }
-    let prepared: Vec<(Option<Image>, Warnings)> = desc
+    let prepared: Vec<ReadyImage> = desc
         .images
         .par_iter_mut()
         .enumerate()
@@ -86,23 +92,34 @@ fn prepare_images(desc: &mut SceneDesc, used: &[bool], warnings: &mut Warnings) 
             if !wanted[i] {
                 return (None, warnings);
             }
-            let (name, place) = (image.name.clone(), image.place.clone());
-            let pixels = if lights[i] {
-                image.pixels.clone()
-            } else {
-                std::mem::replace(&mut image.pixels, PixelData::U8(Vec::new()))
-            };
-            let made = Image::new(ImageDesc { name, place: place.clone(), pixels, ..*image }, &mut warnings);
-            (made.map_err(|error| warnings.push(&place, format!("{error}: taken as white"))).ok(), warnings)
+            if let Some(known) = cache.image(image) {
+                return known;
+            }
+            let place = image.place.clone();
+            let made = Image::new(texels_of(image, lights[i]), &mut warnings);
+            let made = made.map_err(|error| warnings.push(&place, format!("{error}: taken as white")));
+            (made.ok().map(Arc::new), warnings)
         })
         .collect();
+    cache.keep_images(desc, &wanted, &prepared);
     prepared
         .into_iter()
         .map(|(image, of_image)| {
             warnings.extend(of_image);
-            image.map(Arc::new)
+            image
         })
         .collect()
+}
+
+/// The image with its texels, which are taken out of it where nobody else is known to need them.
+fn texels_of(image: &mut Arc<ImageDesc>, needed: bool) -> ImageDesc {
+    match Arc::get_mut(image) {
+        Some(own) if !needed => {
+            let pixels = std::mem::replace(&mut own.pixels, PixelData::U8(Vec::new()));
+            ImageDesc { name: own.name.clone(), place: own.place.clone(), pixels, ..*own }
+        }
+        _ => ImageDesc::clone(image),
+    }
 }
 
 /// Textures of the scene, made when the first material asks.

@@ -62,7 +62,7 @@ fn lat_long(light: &Light<'_>, image: u32, images: &mut Images) -> u32 {
     };
     let Some(source) = images.images.get(image as usize) else { return image };
     let converted = layout::to_lat_long(source, layout);
-    images.images.push(converted);
+    images.images.push(converted.into());
     (images.images.len() - 1) as u32
 }
 

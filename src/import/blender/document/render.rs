@@ -1,0 +1,55 @@
+//! Settings of the scene that shape the picture.
+
+use serde::Deserialize;
+
+use crate::desc::RenderDesc;
+
+/// Settings that are the scene's and not the engine's.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default)]
+pub struct RenderData {
+    /// Pixels across and down, percentage applied.
+    pub size: [u32; 2],
+    /// `pixel_aspect_x`, `pixel_aspect_y`.
+    pub pixel_aspect: [f64; 2],
+    /// The border, in pixels from the lower left corner: left, lower, right and upper edge.
+    pub border: Option<[u32; 4]>,
+    /// Factor of the picture's radiance (`cycles.film_exposure`).
+    pub exposure: f64,
+    /// The world is not seen by the camera, alpha is 0 there.
+    pub film_transparent: bool,
+    /// The view layer's.
+    pub pass_alpha_threshold: f64,
+}
+
+impl Default for RenderData {
+    fn default() -> Self {
+        Self {
+            size: [1920, 1080],
+            pixel_aspect: [1.0; 2],
+            border: None,
+            exposure: 1.0,
+            film_transparent: false,
+            pass_alpha_threshold: 0.5,
+        }
+    }
+}
+
+impl RenderData {
+    /// The same in the engine's terms.
+    pub fn desc(&self) -> RenderDesc {
+        let [x, y] = self.pixel_aspect;
+        let aspect = x / y;
+        RenderDesc {
+            resolution: Some(self.size),
+            pixel_aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
+            crop: self.border.map(|[left, lower, right, upper]| {
+                let height = self.size[1];
+                [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
+            }),
+            film_transparent: self.film_transparent,
+            pass_alpha_threshold: self.pass_alpha_threshold,
+            ..RenderDesc::default()
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Images that were decoded before, for scenes that are handed over again and again.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use crate::desc::{ColorSpace, ImageDesc};
+
+/// What tells whether an image is still the same.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// A file, by when it was written last and its size.
+    File { path: String, written: Option<SystemTime>, bytes: u64, color_space: ColorSpace },
+    /// An image in memory, by how many were handed over before it.
+    Memory { revision: u64, color_space: ColorSpace },
+}
+
+impl Version {
+    /// That of the file at `path` as it is now; `None` where there is none.
+    pub fn of_file(path: &str, color_space: ColorSpace) -> Option<Self> {
+        let data = Path::new(path).metadata().ok()?;
+        Some(Self::File { path: path.to_owned(), written: data.modified().ok(), bytes: data.len(), color_space })
+    }
+}
+
+/// Name and tile of an image.
+type Key = (String, Option<u32>);
+
+/// Decoded images; none where nothing is kept, so that a single render holds no texel twice.
+#[derive(Debug, Default)]
+pub struct KeptImages {
+    on: bool,
+    images: HashMap<Key, (Version, Arc<ImageDesc>)>,
+}
+
+impl KeptImages {
+    /// Keeps from now on what is decoded.
+    pub fn turn_on(&mut self) {
+        self.on = true;
+    }
+
+    /// The image, if it was decoded in this very version.
+    pub fn get(&self, key: &Key, version: &Version) -> Option<Arc<ImageDesc>> {
+        self.images.get(key).filter(|(known, _)| known == version).map(|(_, image)| image.clone())
+    }
+
+    /// Keeps these images and forgets all others.
+    pub fn replace(&mut self, images: impl Iterator<Item = (Key, Version, Arc<ImageDesc>)>) {
+        if self.on {
+            self.images = images.map(|(key, version, image)| (key, (version, image))).collect();
+        }
+    }
+}
