@@ -21,6 +21,7 @@ mod cycles;
 mod diagnostics;
 mod draw_mode;
 mod files;
+mod frame;
 mod gather;
 mod images;
 mod inherit;

@@ -185,6 +185,14 @@ impl<'a> Materials<'a> {
         sets
     }
 
+    /// Names of the primvars that the graph of material `index` asks for.
+    pub fn named_primvars(&self, index: u32) -> impl Iterator<Item = Arc<str>> {
+        self.get(index).into_iter().flat_map(|material| material.graph.ops()).filter_map(|op| match op {
+            Op::Leaf(Leaf::Attribute { name, .. }) => Some(name.clone()),
+            _ => None,
+        })
+    }
+
     /// Moves everything into `scene`.
     pub fn finish(self, scene: &mut SceneDesc) {
         scene.images = self.images.images;
