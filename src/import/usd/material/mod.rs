@@ -10,6 +10,7 @@ mod closure;
 mod color;
 mod evaluate;
 mod expr;
+mod geometry;
 mod lower;
 mod models;
 mod mtlx;

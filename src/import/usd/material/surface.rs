@@ -8,7 +8,7 @@ use super::lower::Lowering;
 use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
+    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -16,6 +16,12 @@ use crate::desc::{
 pub(super) struct Surface {
     pub base_color: Id,
     pub metallic: Id,
+    /// Of metal at grazing angles, over Schlick's curve.
+    pub metal_edge: Id,
+    /// 0 for Lambert's law.
+    pub diffuse_roughness: Id,
+    /// Share of the diffuse light that leaves on the other side, and its color.
+    pub translucent: Option<(Id, Id)>,
     /// Perceptual.
     pub roughness: Id,
     pub ior: Id,
@@ -46,6 +52,8 @@ pub(super) struct Coat {
     pub weight: Id,
     pub roughness: Id,
     pub ior: Id,
+    /// What is left of light that goes straight down and up.
+    pub tint: Id,
     pub normal: Option<Id>,
 }
 
@@ -93,6 +101,9 @@ impl Surface {
         Self {
             base_color: one,
             metallic: zero,
+            metal_edge: one,
+            diffuse_roughness: zero,
+            translucent: None,
             roughness: x.number(0.5),
             ior: x.number(1.5),
             specular: one,
@@ -127,6 +138,8 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
     let mut material = MaterialDesc {
         base_color: f.color(base_color),
         metallic: f.scalar(surface.metallic),
+        metal_edge: f.color(surface.metal_edge),
+        diffuse_roughness: f.scalar(surface.diffuse_roughness),
         roughness: f.scalar(surface.roughness),
         ior: f.number("index of refraction", surface.ior),
         specular: f.scalar(surface.specular),
@@ -135,7 +148,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         dispersion: surface.dispersion.max(0.0),
         emission: f.color(surface.emission),
         alpha: f.scalar(alpha),
-        normal: surface.normal.and_then(|id| f.normal(id)),
+        normal: surface.normal.and_then(|id| f.normal("normal", id)),
         occlusion: surface.occlusion.and_then(|id| f.occlusion(id)),
         ..MaterialDesc::default()
     };
@@ -161,9 +174,12 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         weight: f.scalar(coat.weight),
         roughness: f.scalar(coat.roughness),
         ior: f.number("coat index of refraction", coat.ior),
-        tint: ColorInput::constant([1.0; 3]),
-        normal: coat.normal.and_then(|id| f.normal(id)),
+        tint: f.color(coat.tint),
+        normal: coat.normal.and_then(|id| f.normal("coat normal", id)),
     });
+    let translucent = surface.translucent.filter(|(weight, _)| !f.e.exprs.is(*weight, 0.0));
+    material.translucent =
+        translucent.map(|(weight, color)| TranslucentDesc { weight: f.scalar(weight), color: f.color(color) });
     material.sheen = surface
         .sheen
         .filter(|(color, _)| !f.e.exprs.is(*color, 0.0))
@@ -236,9 +252,14 @@ impl Finisher<'_, '_, '_> {
     }
 
     /// A tangent-space normal, −1 to 1.
-    fn normal(&mut self, id: Id) -> Option<NormalInput> {
+    fn normal(&mut self, what: &str, id: Id) -> Option<NormalInput> {
         match self.e.exprs.op(id) {
             Op::Constant([x, y, ..]) if *x == 0.0 && *y == 0.0 => return None,
+            _ if self.is_own_normal(id) => return None,
+            _ if self.e.exprs.has_leaf(id) => {
+                self.e.warn(self.node, format!("its {what} is computed of vectors, which isn't read; left out"));
+                return None;
+            }
             // 2 t − 1, the first two times a factor, which is how maps are stored.
             Op::Lookup(l) if is_color(l) && l.factor[2] == 2.0 && l.bias[2] == -1.0 => {
                 let scale = l.factor[0] / 2.0;
@@ -254,6 +275,15 @@ impl Finisher<'_, '_, '_> {
         let (half, one, tangent) = (graph.number(0.5), graph.number(1.0), graph.leaf(Leaf::Tangent));
         let stored = graph.math(Math::MultiplyAdd, &[tilt, half, half]);
         Some(NormalInput::Graph(graph.normal_map(stored, one, tangent)))
+    }
+
+    /// True for the surface's own normal, in whatever space.
+    fn is_own_normal(&self, id: Id) -> bool {
+        match self.e.exprs.op(id) {
+            Op::Leaf(leaf) => matches!(leaf, Leaf::Normal | Leaf::ObjectNormal),
+            Op::Apply(Function::Affine(_) | Function::Normalize(_), args) => self.is_own_normal(args[0]),
+            _ => false,
+        }
     }
 
     /// The factor of an occlusion is its strength.
