@@ -169,7 +169,9 @@ def Scope "Render" {
         uniform token aspectRatioConformPolicy = "adjustApertureHeight"
         uniform float pixelAspectRatio = 2
     }
-    def RenderProduct "One" { uniform float4 dataWindowNDC = (0.25, 0, 0.75, 0.5) }
+    def RenderProduct "One" {
+        uniform float4 dataWindowNDC = (0.25, 0, 0.75, 0.5)
+    }
 }
 def Camera "Cam" {}
 def Scope "Looks" {
