@@ -49,6 +49,9 @@ def judge_material(stage, prim, material, answer, found):
         _, file, _ = expected
         image = (mine["texture"] or {}).get("image") or ""
         tiled = "<UDIM>" in file
+        # Alpha of a picture that has none.
+        if name == "opacity" and file.endswith("jpg") and mine == {"factor": 1.0, "texture": None, "graph": False}:
+            continue
         found.check(os.path.basename(image) == file or tiled, path, f"{name} is the image {image}, not {file}")
 
 
@@ -175,6 +178,14 @@ def Scope "Render" {
 }
 def Camera "Cam" {}
 def Scope "Looks" {
+    def Material "Other" {
+        token outputs:surface.connect = </Looks/Other/S.outputs:surface>
+        def Shader "S" {
+            uniform token info:id = "UsdPreviewSurface"
+            color3f inputs:emissiveColor = (1, 2, 3)
+            token outputs:surface
+        }
+    }
     def Material "Paint" {
         token outputs:surface.connect = </Looks/Paint/S.outputs:surface>
         color3f inputs:tint = (0.25, 0.5, 0.75)
@@ -194,6 +205,19 @@ def Mesh "Bound" (prepend apiSchemas = ["MaterialBindingAPI"]) {
     point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0.5), (0, 1, 0), (2, 0, 1)]
     normal3f[] normals = [(0, 0, 2), (0, 1, 1), (0, 0, 1), (1, 0, 1), (0, 0, 1)] (interpolation = "vertex")
     uniform token subdivisionScheme = "none"
+}
+def Mesh "Parts" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+    rel material:binding = </Looks/Paint>
+    int[] faceVertexCounts = [4, 3]
+    int[] faceVertexIndices = [0, 1, 2, 3, 1, 4, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0.5), (0, 1, 0), (2, 0, 1)]
+    uniform token subdivisionScheme = "none"
+    def GeomSubset "Some" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        uniform token elementType = "face"
+        uniform token familyName = "materialBind"
+        int[] indices = [1]
+        rel material:binding = </Looks/Other>
+    }
 }
 def Mesh "Free" {
     int[] faceVertexCounts = [4, 3]
@@ -221,4 +245,9 @@ def test_every_kind_of_look(tmp_path):
     # What is compared can differ.
     described = read(path)["values"]
     assert described["render"]["window"] == [0.25, 0.5, 0.75, 1.0]
-    assert {m["name"] for m in described["materials"]} >= {"Paint"}
+    stage = Stage(path)
+    paint = usd_looks.preview_surface(stage, stage.stage.GetPrimAtPath("/Looks/Paint"))
+    kind, tint = usd_looks.value_or_texture(stage, paint, "diffuseColor", (0.18,) * 3)
+    parts = next(i for i in described["instances"] if i["place"] == "/Parts")
+    assert described["meshes"][parts["mesh"]]["material_slots"] == [0, 0, 1]
+    assert (kind, tint.tolist()) == ("value", [0.25, 0.5, 0.75])

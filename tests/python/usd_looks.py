@@ -26,7 +26,9 @@ CONFORM = {
 def preview_surface(stage, material):
     """The UsdPreviewSurface that a material shows; `None` where it shows another."""
     material = UsdShade.Material(material)
-    if material.ComputeSurfaceSource("mtlx")[0]:
+    # ComputeSurfaceSource would give what has no context for one that is absent.
+    output = material.GetSurfaceOutput("mtlx")
+    if output and output.HasConnectedSource():
         return None
     shader = material.ComputeSurfaceSource("")[0]
     return shader if shader and shader.GetIdAttr().Get() == "UsdPreviewSurface" else None
