@@ -45,7 +45,7 @@ fn shapes_carry_what_their_material_names() {
     // The material's fallback is taken where there is none.
     assert_eq!(of_mesh(&loaded, "/World/Smooth", "tint"), None);
     assert_eq!(of_mesh(&loaded, "/World/Other", "tint"), None);
-    assert!(loaded.said_of("/World/Other").contains("a value of type string"), "{:?}", loaded.said);
+    assert!(loaded.said_of("/World/Other").contains("a value of type String"), "{:?}", loaded.said);
     assert_eq!(loaded.said.len(), 1, "{:?}", loaded.said);
 }
 
