@@ -100,7 +100,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) ->
 pub(super) fn named(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], names: &[Arc<str>]) -> Vec<Data<4>> {
     let api = PrimvarsAPI::from_prim_unchecked(prim.clone());
     let found = |name: &Arc<str>| {
-        let own = api.primvar(&**name).ok();
+        let own = api.primvar(name).ok();
         let above = inherited.iter().filter(|primvar| primvar.primvar_name() == &**name).cloned();
         own.into_iter().chain(above).find_map(|primvar| data(reading, &primvar, graph_values))
     };
