@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;
 
+use penumbra::desc::graph::{Graph, Leaf};
 use penumbra::desc::{
     Attribute, ColorInput, MaterialDesc, MeshDesc, RoundsDesc, ScalarInput, SceneDesc, ShapeRef, Strand, VolumeDesc,
 };
@@ -55,6 +56,33 @@ fn tuft(count: u32) -> Vec<Vec<[f32; 4]>> {
                 .collect()
         })
         .collect()
+}
+
+#[test]
+fn graphs_read_values_along_strands_and_of_balls() {
+    let mut graph = Graph::default();
+    let glow = graph.leaf(Leaf::Attribute { name: "glow".into(), fallback: [0.0; 4] });
+    let shining = MaterialDesc {
+        base_color: ColorInput::constant([0.0; 3]),
+        specular: ScalarInput::constant(0.0),
+        emission: ColorInput::graph(glow),
+        graph,
+        ..MaterialDesc::default()
+    };
+    let strand = strands(&[vec![[-1.0, 0.0, 0.0, 0.3], [1.0, 0.0, 0.0, 0.3]]]);
+    let ball = balls(&[[0.0, 0.0, 0.0, 0.5]]);
+    // Half way between both ends of the strand.
+    for (rounds, values, expected) in
+        [(strand, vec![[1.0; 4], [3.0; 4]], 2.0), (ball.clone(), vec![[5.0; 4]], 5.0), (ball, Vec::new(), 0.0)]
+    {
+        let mut builder = Builder::default();
+        let material = builder.material(shining.clone());
+        let attributes = if values.is_empty() { Vec::new() } else { vec![("glow".into(), values)] };
+        builder.rounds(RoundsDesc { attributes, ..rounds }, material);
+        builder.look([0.0; 3], [0.0, 0.0, -1.0], 0.1);
+        let picture = picture(&builder.desc, 4, &settings("combined", 64));
+        close("glow", mean(&picture, "Combined", 0), expected, 1e-2);
+    }
 }
 
 #[test]

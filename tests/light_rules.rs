@@ -153,6 +153,22 @@ fn only_linked_objects_stop_a_light() {
     }
 }
 
+/// UsdLux' `inputs:diffuse` and `inputs:specular`.
+#[test]
+fn factors_weigh_what_a_light_does_to_each_kind_of_scattering() {
+    for (name, kind) in kinds() {
+        for roughness in [0.0, 0.3] {
+            let free = values(&lit(kind, roughness, LightLinks::default(), Visibility::ALL));
+            let links = LightLinks { response: [0.25, 2.0], ..LightLinks::default() };
+            let [diffuse, glossy, combined, shadow, unshadowed] = values(&lit(kind, roughness, links, Visibility::ALL));
+            let expected = [0.25 * free[0], 2.0 * free[1], combined, free[3], 0.25 * free[4]];
+            same(&format!("{name}, roughness {roughness}"), [diffuse, glossy, combined, shadow, unshadowed], expected);
+            // Each share lies between what both factors would do to all of it.
+            assert!((0.25 * free[2]..=2.0 * free[2]).contains(&combined), "{name}: {combined} of {}", free[2]);
+        }
+    }
+}
+
 #[test]
 fn only_linked_objects_are_lit() {
     for (name, kind) in kinds() {

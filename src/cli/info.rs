@@ -1,6 +1,7 @@
 //! `penumbra info`: what was read from a scene.
 
 mod lights;
+mod materials;
 mod values;
 
 use std::collections::HashMap;

@@ -97,6 +97,7 @@ fn check_rounds(rounds: &RoundsDesc) -> Result<()> {
     rule(rounds.radii.len() == points, "wrong count of radii")?;
     rule(rounds.uvs.iter().all(|values| values.len() == points), "wrong count of UVs")?;
     rule(rounds.colors.as_ref().is_none_or(|values| values.len() == points), "wrong count of colors")?;
+    rule(rounds.attributes.iter().all(|(_, values)| values.len() == points), "wrong count of attributes")?;
     let ends = || rounds.strands.iter().map(|strand| strand.end);
     let grow = std::iter::once(0).chain(ends()).zip(ends()).all(|(before, end)| before < end);
     let fit = ends().next_back().is_none_or(|end| end as usize == points);

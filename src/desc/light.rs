@@ -251,11 +251,13 @@ pub struct LightLinks {
     pub receivers: Option<LinkSet>,
     /// Instances that stop its light; `None` for all that cast shadows.
     pub blockers: Option<LinkSet>,
+    /// Factors of what it lights by diffuse scattering, and by all other.
+    pub response: [f64; 2],
 }
 
 impl Default for LightLinks {
     fn default() -> Self {
-        Self { group: None, cast_shadow: true, receivers: None, blockers: None }
+        Self { group: None, cast_shadow: true, receivers: None, blockers: None, response: [1.0; 2] }
     }
 }
 

@@ -31,7 +31,7 @@ pub use material::{
     NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
-pub use render::RenderDesc;
+pub use render::{Conform, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 

@@ -12,8 +12,13 @@ pub struct RenderDesc {
     pub resolution: Option<[u32; 2]>,
     /// Width of a pixel over its height.
     pub pixel_aspect: f64,
+    /// What a picture of another shape than the camera's frame shows.
+    pub conform: Conform,
     /// The part of the picture that is wanted: left, top, width and height in pixels.
     pub crop: Option<[u32; 4]>,
+    /// The same in shares of the picture, whatever its size: left, top, right and lower edge, 0 to 1. The pixels
+    /// are those whose centres are within. `crop` goes before it.
+    pub window: Option<[f64; 4]>,
     /// The background is not seen by the camera: alpha is 0 there, and the environment pass is as ever.
     pub film_transparent: bool,
     /// Opacity from which on a surface is what normal, UV, depth, position and index passes show; thinner ones
@@ -31,11 +36,62 @@ impl Default for RenderDesc {
             camera: None,
             resolution: None,
             pixel_aspect: 1.0,
+            conform: Conform::Expand,
             crop: None,
+            window: None,
             film_transparent: false,
             pass_alpha_threshold: 0.5,
             passes: Vec::new(),
             product: None,
         }
+    }
+}
+
+/// What a picture of another shape than the camera's frame shows (UsdRender's `aspectRatioConformPolicy`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Conform {
+    /// All of the frame, and more on two sides.
+    #[default]
+    Expand,
+    /// Nothing but the frame, less of it on two sides.
+    Crop,
+    /// The frame's height, and the width that follows.
+    Width,
+    /// The frame's width, and the height that follows.
+    Height,
+    /// The frame, with pixels of another shape.
+    Pixels,
+}
+
+impl RenderDesc {
+    /// The part of a picture of `whole` pixels that is wanted: left, top, width and height.
+    pub fn part(&self, whole: [u32; 2]) -> Option<[u32; 4]> {
+        if self.crop.is_some() {
+            return self.crop;
+        }
+        let [left, top, right, bottom] = self.window?;
+        // The first pixel whose centre is not before the edge.
+        let pixel = |edge: f64, count: u32| (edge * f64::from(count) - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
+        let (x, y) = (pixel(left, whole[0]), pixel(top, whole[1]));
+        let width = pixel(right, whole[0]).saturating_sub(x);
+        Some([x, y, width, pixel(bottom, whole[1]).saturating_sub(y)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_has_the_pixels_whose_centres_are_within() {
+        let part = |window, whole| RenderDesc { window: Some(window), ..RenderDesc::default() }.part(whole);
+        assert_eq!(part([0.0, 0.0, 1.0, 1.0], [7, 5]), Some([0, 0, 7, 5]));
+        assert_eq!(part([0.25, 0.5, 1.0, 1.0], [8, 4]), Some([2, 2, 6, 2]));
+        // Centres at 0.5, 1.5, 2.5 and 3.5 of 4.
+        assert_eq!(part([0.2, 0.1, 0.6, 0.9], [4, 4]), Some([1, 0, 1, 4]));
+        assert_eq!(part([0.2, 0.2, 0.3, 0.3], [4, 4]), Some([1, 1, 0, 0]));
+        let crop = Some([1, 2, 3, 4]);
+        let both = RenderDesc { crop, window: Some([0.0; 4]), ..RenderDesc::default() };
+        assert_eq!(both.part([9, 9]), crop);
     }
 }

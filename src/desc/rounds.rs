@@ -23,6 +23,8 @@ pub struct RoundsDesc {
     pub uvs: Vec<Vec<[f32; 2]>>,
     /// Linear colour of each point, straight alpha; multiplied onto the base colour.
     pub colors: Option<Vec<[f32; 4]>>,
+    /// Values of each point that graphs ask for by name, as in [`super::NamedAttribute`].
+    pub attributes: Vec<(Arc<str>, Vec<[f32; 4]>)>,
     /// Index into the instance's material list for each strand, or ball; `None` for 0 everywhere.
     pub material_slots: Option<Vec<u16>>,
     /// Points at other times of the shutter, in the order of time; empty for what keeps its shape.

@@ -50,7 +50,7 @@ impl Shading<'_> {
         let (LightSample { li, wi, end, pdf, delta }, rules) = sample(scene, &at, choice, u)?;
         let eval = self.bsdf.eval(self.frame.to_local(wi));
         let weight = if delta { 1.0 } else { power_heuristic(samples * pdf, eval.pdf) };
-        let unoccluded = seen(eval.f_cos, rules.seen) * (li * (weight / pdf));
+        let unoccluded = seen(eval.f_cos, rules) * (li * (weight / pdf));
         if unoccluded.sum().is_black() {
             return None;
         }
@@ -81,6 +81,7 @@ impl Shading<'_> {
             return None;
         }
         let response = if bare { Rgb::splat(local_wi.z) } else { self.bsdf.eval(local_wi).f_cos.diffuse };
+        let response = rules.response.map_or(response, |[diffuse, _]| response * diffuse);
         if response.is_black() {
             return None;
         }

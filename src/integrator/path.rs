@@ -81,7 +81,7 @@ impl Path {
         if rules.shadow != Shadow::Cast || !rules.lights(last.from.class) {
             return;
         }
-        let l = seen(last.shares, rules.seen) * (self.beta * le);
+        let l = seen(last.shares, rules) * (self.beta * le);
         if self.scatterings == 1 {
             add_direct(sample, rules, l);
         } else {
@@ -383,7 +383,7 @@ fn scatter(
     let unshadowed = first && scene.effects.shadow && scattered.weight.diffuse != Rgb::BLACK;
     if unshadowed || scene.effects.own_shadows {
         emitters_along(scene, &last, &path.state, &path.ray, path.cone, unshadowed, |found| {
-            let weight = seen(scattered.weight, found.rules.seen);
+            let weight = seen(scattered.weight, found.rules);
             if unshadowed {
                 sample.unshadowed += weight.diffuse * (beta * found.le);
             }

@@ -1,7 +1,7 @@
 //! Where a path scattered last, and what that means for the light that its ray finds.
 
 use crate::bsdf::ByLobe;
-use crate::light::{EmitterHit, Receiver, Seen};
+use crate::light::{EmitterHit, Receiver, Rules};
 use crate::math::{Rgb, Vec3};
 use crate::sampling::power_heuristic;
 use crate::scene::Scene;
@@ -31,12 +31,21 @@ impl Scattering {
     }
 }
 
-/// `by_lobe` less the classes that do not see a light.
-pub fn seen(by_lobe: ByLobe, seen: Seen) -> ByLobe {
+/// `by_lobe` less the classes that do not see a light with `rules`, times its factors.
+pub fn seen(by_lobe: ByLobe, rules: &Rules) -> ByLobe {
+    let seen = rules.seen;
     let keep = |color: Rgb, keep: bool| if keep { color } else { Rgb::BLACK };
-    ByLobe {
+    let kept = ByLobe {
         diffuse: keep(by_lobe.diffuse, seen.diffuse),
         glossy: keep(by_lobe.glossy, seen.glossy),
         transmission: keep(by_lobe.transmission, seen.transmission),
+    };
+    match rules.response {
+        None => kept,
+        Some([diffuse, specular]) => ByLobe {
+            diffuse: kept.diffuse * diffuse,
+            glossy: kept.glossy * specular,
+            transmission: kept.transmission * specular,
+        },
     }
 }

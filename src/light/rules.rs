@@ -39,6 +39,8 @@ pub struct Rules {
     pub shadow: Shadow,
     /// For each class of receivers, whether it is lit; `None` where all are.
     pub receivers: Option<Arc<[bool]>>,
+    /// Factors of what it lights by diffuse scattering, and by all other; `None` where both are 1.
+    pub response: Option<[f32; 2]>,
 }
 
 /// A light of the scene.
@@ -57,7 +59,7 @@ impl Seen {
 
 impl Rules {
     /// A light without any rule.
-    pub const NONE: Self = Self { group: None, seen: Seen::ALL, shadow: Shadow::Cast, receivers: None };
+    pub const NONE: Self = Self { group: None, seen: Seen::ALL, shadow: Shadow::Cast, receivers: None, response: None };
 
     /// True where the light reaches receivers of `class`.
     pub fn lights(&self, class: u16) -> bool {

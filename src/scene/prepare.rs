@@ -153,7 +153,7 @@ impl Scene {
 
 /// Size of the part of a picture of `whole` that is wanted.
 fn cropped(desc: &SceneDesc, whole: [u32; 2]) -> Result<[u32; 2]> {
-    let Some([left, top, width, height]) = desc.render.crop else { return Ok(whole) };
+    let Some([left, top, width, height]) = desc.render.part(whole) else { return Ok(whole) };
     let fits = |start: u32, size: u32, whole: u32| size > 0 && start.checked_add(size).is_some_and(|end| end <= whole);
     if fits(left, width, whole[0]) && fits(top, height, whole[1]) {
         return Ok([width, height]);

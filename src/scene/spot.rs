@@ -8,7 +8,7 @@ use super::{Asked, Instance};
 use crate::camera::Camera;
 use crate::desc::graph::{Leaf, Quantity, Space, Value};
 use crate::math::{DMat3, DVec3};
-use crate::shape::{Mesh, Shape};
+use crate::shape::{Attribute, Mesh, Shape};
 use crate::texture::graph::{Beside, HERE, Hit, Program};
 use crate::texture::{Texture, TextureRef};
 
@@ -192,7 +192,13 @@ impl Spot<'_> {
 
     fn of_mesh_attribute(&self, slot: u16, at: Beside) -> Option<Value> {
         let attribute = self.of_mesh()?.attributes.get(usize::from(slot))?.as_ref()?;
-        let (mesh, triangle) = self.mesh()?;
+        let (mesh, triangle) = match self.around.shape {
+            Shape::Rounds(rounds) => {
+                let Attribute::Point(values) = attribute else { return None };
+                return Some(rounds.along(values, self.it.primitive, self.it.at[0]).map(f64::from));
+            }
+            Shape::Mesh(_) => self.mesh()?,
+        };
         let corners = attribute.at(triangle, mesh.triangles[triangle as usize]);
         Some(self.blend(corners, self.beside(at).uv))
     }

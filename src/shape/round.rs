@@ -153,9 +153,13 @@ impl Rounds {
 
     /// Colour with alpha.
     pub fn color(&self, segment: u32, [u, _]: [f32; 2]) -> Option<[f32; 4]> {
-        let values = self.colors.as_ref()?;
+        Some(self.along(self.colors.as_ref()?, segment, u))
+    }
+
+    /// Of values of the points, that at the share `u` of `segment`.
+    pub fn along(&self, values: &[[f32; 4]], segment: u32, u: f32) -> [f32; 4] {
         let ([_, first, last, _], s) = (self.around(segment), share_of(u) as f32);
-        Some(std::array::from_fn(|k| values[first][k] * (1.0 - s) + values[last][k] * s))
+        std::array::from_fn(|k| values[first][k] * (1.0 - s) + values[last][k] * s)
     }
 
     /// Memory held, in bytes.

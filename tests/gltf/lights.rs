@@ -178,7 +178,7 @@ fn rules_apply_to_the_nodes_mesh_and_punctual_light() {
     let rules = json!({"visibility": rays, "light_group": "key", "cast_shadow": false});
     glb.set("/nodes/0/extras", json!({"penumbra": rules}));
     let scene = load(&glb);
-    let links = LightLinks { group: Some("key".into()), cast_shadow: false, receivers: None, blockers: None };
+    let links = LightLinks { group: Some("key".into()), cast_shadow: false, ..LightLinks::default() };
     assert_eq!((&only(&scene).links, &scene.instances[0].links), (&links, &links));
     let visibility = Visibility { camera: false, diffuse: false, glossy: true, transmission: false, shadow: false };
     assert_eq!((only(&scene).visibility, scene.instances[0].visibility), (visibility, visibility));

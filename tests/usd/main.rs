@@ -10,6 +10,7 @@ mod instance_colors;
 mod instances;
 mod large;
 mod mutation;
+mod primvars;
 #[path = "../support/rng.rs"]
 mod rng;
 mod shown;

@@ -12,6 +12,8 @@ use penumbra::error::Place;
 use penumbra::math::{DAffine3, DMat4};
 use serde_json::{Value, json};
 
+use super::materials;
+
 /// All of `scene`.
 pub fn describe(scene: &SceneDesc) -> Value {
     json!({
@@ -19,10 +21,14 @@ pub fn describe(scene: &SceneDesc) -> Value {
         "rounds": scene.rounds.iter().map(|desc| rounds(desc)).collect::<Vec<_>>(),
         "instances": scene.instances.iter().map(|i| instance(i, scene)).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| light(l, scene)).collect::<Vec<_>>(),
+        "materials": scene.materials.iter().map(|m| materials::describe(m, scene)).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(camera).collect::<Vec<_>>(),
         "render": {
             "camera": scene.render.camera.as_deref(),
             "resolution": scene.render.resolution,
+            "pixel_aspect": scene.render.pixel_aspect,
+            "conform": format!("{:?}", scene.render.conform).to_lowercase(),
+            "window": scene.render.window,
             "passes": scene.render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
             "product": scene.render.product.as_deref(),
         },
@@ -46,6 +52,9 @@ fn mesh(mesh: &MeshDesc) -> Value {
         "normals": mesh.normals.as_ref().map(attribute),
         "uvs": mesh.uvs.iter().map(attribute).collect::<Vec<_>>(),
         "colors": mesh.colors.as_ref().map(attribute),
+        "attributes": mesh.attributes.iter()
+            .map(|named| json!({ "name": &*named.name, "values": attribute(&named.values) }))
+            .collect::<Vec<_>>(),
         "material_slots": mesh.material_slots,
         "motion": motion(&mesh.motion),
     })
@@ -60,6 +69,9 @@ fn rounds(rounds: &RoundsDesc) -> Value {
         "strands": rounds.strands.iter().map(|s| json!({ "end": s.end, "closed": s.closed })).collect::<Vec<_>>(),
         "uvs": rounds.uvs,
         "colors": rounds.colors,
+        "attributes": rounds.attributes.iter()
+            .map(|(name, values)| json!({ "name": &**name, "values": values }))
+            .collect::<Vec<_>>(),
         "material_slots": rounds.material_slots,
         "motion": motion(&rounds.motion),
     })
@@ -110,6 +122,7 @@ fn links(links: &LightLinks, scene: &SceneDesc) -> Value {
     json!({
         "group": links.group.as_deref(),
         "cast_shadow": links.cast_shadow,
+        "response": links.response,
         "receivers": links.receivers.as_ref().map(set),
         "blockers": links.blockers.as_ref().map(set),
     })

@@ -135,7 +135,7 @@ fn prototype(walk: &mut Walk<'_, '_>, instancer: &Prim, context: &Context, path:
 fn motion(walk: &mut Walk<'_, '_>, prim: &Prim, layout: &Layout<'_>) -> Option<Vec<Vec<DAffine3>>> {
     let attributes = || PLACES.map(|name| prim.attribute(name)).to_vec();
     let flows = layout.flow.is_some() || layout.spin.is_some();
-    walk.clock.note(|| Mover::Instances(attributes(), flows));
+    walk.clock.note(|| Mover::Attributes(attributes(), flows));
     let varies = || attributes().iter().any(|a| a.value_might_be_time_varying().unwrap_or(false));
     if walk.clock.times.is_empty() || !(flows || varies()) {
         return None;

@@ -23,6 +23,7 @@ mod diagnostics;
 mod draw_mode;
 mod files;
 mod flow;
+mod frame;
 mod gather;
 mod images;
 mod inherit;

@@ -5,6 +5,7 @@ use openusd::sdf::{self, Value};
 use openusd::tf::Token;
 use openusd::usd::Prim;
 
+use super::frame::{Off, Said};
 use super::stage::Reading;
 use super::values::Values;
 use crate::desc::RenderDesc;
@@ -26,11 +27,10 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         })
         .collect();
     let product = products.first().map(|(path, prim)| Values { reading, prim, path });
-    if products.len() > 1 {
-        let count = products.len();
-        values.warn(format!("{count} products: the passes of all go to one file, seen and named as the first says"));
+    for (path, prim) in products.iter().skip(1) {
+        tell_of_product(&Values { reading, prim, path }, products[0].0.as_str());
     }
-    tell_what_is_not_rendered(&values);
+    let said = Said { settings: values, product };
     if let Some(purposes) = tokens(&values, "includedPurposes") {
         if !purposes.iter().any(|purpose| purpose == "default") && reading.options.purposes.is_none() {
             values.warn("includedPurposes leaves out default: what has no other purpose is shown all the same");
@@ -39,21 +39,47 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
             values.warn(format!("includedPurposes names \"{other}\", which is no purpose: it is ignored"));
         }
     }
-    if let Some(product) = &product {
-        tell_what_is_not_rendered(product);
+    if product.and_then(|product| product.token("productType")).is_some_and(|kind| kind == "deepRaster") {
+        said.of("productType").warn("deep pictures are not written: it becomes a flat one");
     }
     let camera = |values: &Values<'_>| values.targets("camera").first().map(|path| path.as_str().into());
     let name = product.and_then(|product| product.token("productName")).filter(|name| !name.is_empty());
     RenderDesc {
         camera: product.as_ref().and_then(camera).or_else(|| camera(&values)),
-        resolution: product
-            .as_ref()
-            .filter(|p| is_authored(p.prim, "resolution"))
-            .map_or_else(|| resolution(&values), resolution),
+        resolution: resolution(&said.of("resolution")),
+        pixel_aspect: said.pixel_aspect(),
+        conform: said.conform(),
+        window: said.window(),
         passes: passes(reading, &products),
         product: name.map(Into::into),
         ..RenderDesc::default()
     }
+}
+
+/// What the settings, or their first product, turn off.
+pub(super) fn off(reading: &Reading<'_>) -> Off {
+    let Some((path, settings)) = settings(reading) else { return Off::default() };
+    let values = Values { reading, prim: &settings, path: &path };
+    let found = values.targets("products").into_iter().find_map(|path| {
+        let prim = reading.stage.prim(path.clone()).ok().filter(|prim| is_a(prim, "RenderProduct"))?;
+        Some((path, prim))
+    });
+    let product = found.as_ref().map(|(path, prim)| Values { reading, prim, path });
+    Said { settings: values, product }.off()
+}
+
+/// Tells what of a further product is not rendered.
+fn tell_of_product(values: &Values<'_>, first: &str) {
+    let framing = ["resolution", "pixelAspectRatio", "aspectRatioConformPolicy", "dataWindowNDC"];
+    let mut others: Vec<&str> = framing.into_iter().filter(|name| is_authored(values.prim, name)).collect();
+    if !values.targets("camera").is_empty() {
+        others.insert(0, "camera");
+    }
+    let mut what = format!("is not a picture of its own: its passes go to that of {first}");
+    if !others.is_empty() {
+        what += &format!(", whatever its {} say", others.join(", "));
+    }
+    values.warn(what);
 }
 
 /// What the settings say of purposes, or their fallbacks.
@@ -115,7 +141,7 @@ fn is_a(prim: &Prim, schema: &str) -> bool {
     prim.is_a(schema).unwrap_or(false)
 }
 
-fn is_authored(prim: &Prim, name: &str) -> bool {
+pub(super) fn is_authored(prim: &Prim, name: &str) -> bool {
     prim.attribute(name).has_authored_value().unwrap_or(false)
 }
 
@@ -128,24 +154,6 @@ fn resolution(values: &Values<'_>) -> Option<[u32; 2]> {
             values.warn(format!("a resolution of {width} by {height} is no picture: it is ignored"));
             None
         }
-    }
-}
-
-fn tell_what_is_not_rendered(values: &Values<'_>) {
-    let says = |name: &str| is_authored(values.prim, name);
-    if says("pixelAspectRatio") && values.number("pixelAspectRatio").is_some_and(|aspect| aspect != 1.0) {
-        values.warn("pixelAspectRatio is not rendered: pixels are square");
-    }
-    let window = values.reading.value::<[f32; 4]>(values.prim, "dataWindowNDC");
-    if says("dataWindowNDC") && window.is_some_and(|window| window != [0.0, 0.0, 1.0, 1.0]) {
-        values.warn("dataWindowNDC is not rendered: the whole picture is");
-    }
-    let policy = values.token("aspectRatioConformPolicy").filter(|policy| policy != "expandAperture");
-    if let Some(policy) = policy.filter(|_| says("aspectRatioConformPolicy")) {
-        values.warn(format!("aspectRatioConformPolicy \"{policy}\" is not rendered: the aperture is expanded"));
-    }
-    if values.token("productType").is_some_and(|kind| kind == "deepRaster") {
-        values.warn("deep pictures are not written: it becomes a flat one");
     }
 }
 
@@ -288,11 +296,11 @@ fn of_expression(expression: &str) -> Vec<&'static str> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::light::testing::Stage;
     use super::*;
 
-    fn render(metadata: &str, prims: &str) -> (RenderDesc, String) {
+    pub fn render(metadata: &str, prims: &str) -> (RenderDesc, String) {
         let stage = Stage::new(metadata, &format!("def Xform \"Any\" {{}}\n{prims}"));
         let desc = stage.with("/Any", |reading, _| read(reading));
         (desc, stage.said())
@@ -327,14 +335,13 @@ mod tests {
     fn settings_products_and_vars_are_read() {
         let (desc, said) = render(r#"renderSettingsPrimPath = "/Render/Main""#, SETTINGS);
         assert_eq!(desc.camera.as_deref(), Some("/World/Cam"));
-        assert_eq!(desc.resolution, Some([320, 180]));
+        assert_eq!((desc.resolution, desc.pixel_aspect), (Some([320, 180]), 2.0));
         assert_eq!(desc.product.as_deref(), Some("out/beauty.exr"));
         let passes: Vec<&str> = desc.passes.iter().map(|pass| &**pass).collect();
         assert_eq!(passes, ["combined", "diffuse_direct", "depth", "shadow_key", "normal"]);
         for what in [
             "/Render/Main: product /Any is no RenderProduct",
-            "/Render/Main: 2 products",
-            "/Render/Main: pixelAspectRatio",
+            "/Render/Data: is not a picture of its own: its passes go to that of /Render/Beauty",
             "/Render/Vars/Diffuse: rendered as diffuse_direct",
             "/Render/Vars/Odd: there is no pass for \"wobble\"",
             "/Render/Vars: no RenderVar",

@@ -67,7 +67,7 @@ fn gather(reading: &Reading<'_>) -> Haul {
 /// From when to when a camera's shutter is open, in time codes after the frame.
 fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
     // Without a frame there is nothing to be before or after.
-    if reading.time.is_earliest_time() {
+    if reading.time.is_earliest_time() || render::off(reading).stands_still() {
         return None;
     }
     let of = |found: &Found| {
@@ -116,6 +116,8 @@ fn lights_and_cameras(
         }
     }
     scene.lights.extend(worlds.domes);
+    let off = render::off(reading);
+    scene.cameras.iter_mut().for_each(|camera| off.apply(camera));
     if !lost.is_empty() {
         let lost: Vec<&str> = lost.into_iter().collect();
         let what = format!(

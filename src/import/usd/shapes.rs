@@ -61,7 +61,14 @@ pub(super) fn build(
         let takes_color = wants.display_color;
         let shape = *known.entry((look.shape, wants.clone())).or_insert_with(|| {
             let read = reads.get_mut(look.shape.0).and_then(|batch| batch.get_mut(look.shape.1));
-            let source = read.and_then(|read| read.source.take().or_else(|| again(reading, read)));
+            let source = read.and_then(|read| {
+                let mut source = read.source.take().or_else(|| again(reading, read))?;
+                if !wants.named.is_empty() {
+                    let prim = reading.stage.prim(&read.prim).ok()?;
+                    source.read_named(reading, &prim, &inherited(reading, read), &wants.named);
+                }
+                Some(source)
+            });
             let prim = one.look.prim.clone();
             let likeness = source.as_ref().and_then(Source::likeness);
             let number = likeness.map_or(jobs.len(), |l| *alike.entry((l, wants.clone())).or_insert(jobs.len()));
@@ -95,9 +102,13 @@ pub(super) fn build(
 /// Reads once more a shape that was built in another way before.
 fn again(reading: &Reading<'_>, read: &Read) -> Option<Source> {
     let prim = reading.stage.prim(&read.prim).ok()?;
+    shape::read(reading, &prim, &inherited(reading, read), read.skin.as_deref())
+}
+
+/// The primvars that a shape inherits.
+fn inherited(reading: &Reading<'_>, read: &Read) -> Vec<Primvar> {
     let primvar = |path| Primvar::from_attribute(reading.stage.attribute(path).ok()?);
-    let primvars: Vec<Primvar> = read.primvars.iter().filter_map(primvar).collect();
-    shape::read(reading, &prim, &primvars, read.skin.as_deref())
+    read.primvars.iter().filter_map(primvar).collect()
 }
 
 /// The material of the shape and of each of its subsets.
@@ -122,7 +133,11 @@ fn wants(materials: &Materials<'_>, slots: &[Option<u32>], colored: bool) -> Wan
     };
     // Colours of a mesh are those of all of it: they must not tint a material that has its own.
     let display_color = each().all(|m| tinted(materials, m));
+    let mut named: Vec<_> = each().flat_map(|m| materials.named_primvars(m)).collect();
+    named.sort_unstable();
+    named.dedup();
     Wants {
+        named,
         uv_sets: (0..sets as u32).map(name).collect(),
         spare_first_set: !used.contains(&0),
         tangents: each().find_map(|m| materials.tangent_uv_set(m)),

@@ -2,7 +2,7 @@
 
 use super::View;
 use crate::camera::{self, Camera, Lens, Orthographic, Panorama, Perspective, Projection};
-use crate::desc::{CameraDesc, LensDesc, ProjectionDesc, RenderDesc, SceneDesc};
+use crate::desc::{CameraDesc, Conform, LensDesc, ProjectionDesc, RenderDesc, SceneDesc};
 use crate::error::{Error, Result, Warnings};
 use crate::math::DVec3;
 use crate::scene::framing::framing_camera;
@@ -93,24 +93,24 @@ pub fn prepare(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: D
         clip_far: desc.clip_far as f32,
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]) * render.pixel_aspect;
-    let corner = render.crop.map_or([0.0; 2], |[left, top, ..]| [left as f32, top as f32]);
-    let projection = projection(desc, view, size.map(|n| n as f32), aspect);
+    let corner = render.part(size).map_or([0.0; 2], |[left, top, ..]| [left as f32, top as f32]);
+    let projection = projection(desc, view, size.map(|n| n as f32), aspect, render.conform);
     let lens = desc.lens.and_then(|lens| usable_lens(&lens));
     let lens = lens.filter(|_| !matches!(projection, Projection::Panorama(_)));
     Camera { projection, lens, corner }
 }
 
-fn projection(desc: &CameraDesc, view: camera::View, size: [f32; 2], aspect: f64) -> Projection {
+fn projection(desc: &CameraDesc, view: camera::View, size: [f32; 2], aspect: f64, conform: Conform) -> Projection {
     match desc.projection {
         ProjectionDesc::Perspective { fov_y, aspect: framed } => {
             let tan_y = (0.5 * fov_y).tan();
             let tan_x = tan_y * framed.unwrap_or(aspect);
-            let (x, y) = fit(tan_x, tan_y, aspect);
+            let (x, y) = fit([tan_x, tan_y], aspect, conform);
             let center = center(desc.shift, [tan_x, tan_y]);
             Projection::Perspective(Perspective { view, tan_half_x: x, tan_half_y: y, center, size })
         }
         ProjectionDesc::Orthographic { half_width, half_height } => {
-            let (x, y) = fit(half_width, half_height, aspect);
+            let (x, y) = fit([half_width, half_height], aspect, conform);
             let center = center(desc.shift, [half_width, half_height]);
             Projection::Orthographic(Orthographic { view, half_width: x, half_height: y, center, size })
         }
@@ -144,9 +144,18 @@ pub fn exposure(desc: &CameraDesc) -> f32 {
     if exposure.is_finite() && exposure >= 0.0 { exposure } else { 1.0 }
 }
 
-/// The smallest frame of `aspect` around one of `x` × `y`.
-fn fit(x: f64, y: f64, aspect: f64) -> (f32, f32) {
-    let (x, y) = if x / y <= aspect { (y * aspect, y) } else { (x, x / aspect) };
+/// The frame of `aspect` for one of `x` × `y`.
+fn fit([x, y]: [f64; 2], aspect: f64, conform: Conform) -> (f32, f32) {
+    let (wider, higher) = ((y * aspect, y), (x, x / aspect));
+    let (x, y) = match conform {
+        Conform::Expand if x / y <= aspect => wider,
+        Conform::Expand => higher,
+        Conform::Crop if x / y <= aspect => higher,
+        Conform::Crop => wider,
+        Conform::Width => wider,
+        Conform::Height => higher,
+        Conform::Pixels => (x, y),
+    };
     (x as f32, y as f32)
 }
 
@@ -193,6 +202,28 @@ mod tests {
         // A wider picture shows more to both sides of the same centre.
         near(at([200, 100], 100.0, 50.0), 0.1, 0.0);
         near(at([200, 100], 0.0, 0.0), 0.1 - 0.305_816, 0.152_908);
+    }
+
+    /// A frame of 2 by 1 shown in a square: half of its width and height, as UsdRender's policies have it.
+    #[test]
+    fn pictures_of_another_shape_show_what_the_policy_says() {
+        let seen = |half: [f64; 2], conform| {
+            let [half_width, half_height] = half;
+            let projection = ProjectionDesc::Orthographic { half_width, half_height };
+            let render = RenderDesc { conform, ..RenderDesc::default() };
+            let camera = prepare(&desc(projection, [0.0; 2]), &render, [100, 100], DVec3::ZERO);
+            let o = camera.ray(100.0, 0.0).ray.o;
+            [o.x, o.y]
+        };
+        for (conform, wide, high) in [
+            (Conform::Expand, [2.0, 2.0], [2.0, 2.0]),
+            (Conform::Crop, [1.0, 1.0], [1.0, 1.0]),
+            (Conform::Width, [1.0, 1.0], [2.0, 2.0]),
+            (Conform::Height, [2.0, 2.0], [1.0, 1.0]),
+            (Conform::Pixels, [2.0, 1.0], [1.0, 2.0]),
+        ] {
+            assert_eq!((seen([2.0, 1.0], conform), seen([1.0, 2.0], conform)), (wide, high), "{conform:?}");
+        }
     }
 
     #[test]

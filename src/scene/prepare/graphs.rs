@@ -9,6 +9,7 @@ use crate::desc::{self, InstanceDesc, MaterialDesc, MeshDesc, RoundsDesc, SceneD
 use crate::math::DVec3;
 use crate::scene::Material;
 use crate::scene::asked::{Asked, Names, OfMesh, OfObject};
+use crate::shape::Attribute;
 use crate::texture::graph::{Compiler, Program, Resolve, Resolved};
 
 /// Where the indices and names of one material's graph lead.
@@ -115,9 +116,13 @@ fn of_mesh(desc: &MeshDesc, names: &Names) -> OfMesh {
     OfMesh { attributes, generated: (generated, unit_box(corners)) }
 }
 
-/// Strands and balls have no attributes by name.
 fn of_rounds(desc: &RoundsDesc, names: &Names) -> OfMesh {
-    let attributes = names.iter().map(|_| None).collect();
+    let find = |name: &Arc<str>| {
+        let (_, values) = desc.attributes.iter().find(|(of, _)| of == name)?;
+        let finite = |v: &[f32; 4]| v.map(|x| if x.is_finite() { x } else { 0.0 });
+        Some(Attribute::Point(values.iter().map(finite).collect()))
+    };
+    let attributes = names.iter().map(find).collect();
     OfMesh { attributes, generated: (None, unit_box(corners_of(&desc.points))) }
 }
 

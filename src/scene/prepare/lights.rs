@@ -11,6 +11,12 @@ use crate::desc::{LightDesc, LightKind, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
 use crate::light::{Light, Rules, Seen};
 
+/// Factors of a light's light; what is no factor counts as 0.
+fn response(factors: [f64; 2]) -> Option<[f32; 2]> {
+    let usable = |x: f64| if x.is_finite() && x > 0.0 { x as f32 } else { 0.0 };
+    (factors != [1.0; 2]).then(|| factors.map(usable))
+}
+
 /// Every light of the scene, `extra` included; instances learn which light they are. `groups` are
 /// the light groups that passes ask for.
 pub fn prepare(
@@ -33,6 +39,7 @@ pub fn prepare(
         },
         shadow: links.shadow(of),
         receivers: links.receivers(of),
+        response: response(of.response),
     };
     let mut lights = Vec::new();
     for light in desc.lights.iter().chain(extra) {

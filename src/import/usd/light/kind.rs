@@ -315,6 +315,7 @@ mod tests {
             def RectLight "Odd" (prepend apiSchemas = ["ShadowAPI"]) {
                 color3f inputs:shadow:color = (1, 0, 0)
                 float inputs:shadow:distance = 3
+                float inputs:shadow:falloff = 1
                 bool inputs:shadow:enable = 0
                 rel light:filters = </Line>
                 float inputs:radius.connect = </Line.inputs:radius>
@@ -324,18 +325,19 @@ mod tests {
         let egg = stage.light("/Egg").unwrap();
         assert!(matches!(egg.kind, LightKind::Sphere { radius, .. } if (radius - 1.0).abs() < 1e-9));
         assert!(!egg.visibility.diffuse && egg.visibility.glossy);
+        assert_eq!(egg.links.response, [0.0, 0.5]);
         assert!(stage.light("/Line").is_some());
         assert_eq!((stage.light("/Plug"), stage.light("/Door")), (None, None));
         assert!(!stage.light("/Odd").unwrap().links.cast_shadow);
         let said = stage.said();
         for what in [
             "/Egg: its scale makes an ellipsoid",
-            "/Egg: inputs:specular is 0.5",
             "/Line: treatAsLine",
             "/Plug: lights that need a plugin",
             "/Door: portals",
             "/Odd: inputs:shadow:color",
             "/Odd: inputs:shadow:distance",
+            "/Odd: inputs:shadow:falloff",
             "/Odd: light filters",
             "/Odd: inputs:intensity is connected",
         ] {

@@ -61,11 +61,6 @@ impl ShapeLight {
     }
 
     fn new(values: &Values<'_>, sync: Sync) -> Self {
-        for name in ["inputs:diffuse", "inputs:specular"] {
-            if values.number(name).is_some_and(|factor| factor != 1.0) {
-                values.warn(format!("{name} of a shape that is a light is not rendered: it is taken as 1"));
-            }
-        }
         if values.has_api("ShapingAPI") {
             values.warn("ShapingAPI of a shape that is a light is not rendered");
         }

@@ -42,6 +42,7 @@ pub(super) fn lamp(light: &Light<'_>, images: &mut Images, profiles: &mut Profil
             },
             links: LightLinks {
                 cast_shadow: own.links.cast_shadow && rules::links(values).cast_shadow,
+                response: rules::links(values).response,
                 ..own.links.clone()
             },
             ..own

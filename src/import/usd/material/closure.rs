@@ -140,6 +140,9 @@ fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surfa
             let mut s = of(e, "in1")?;
             let factor = e.input(node, "in2", [1.0; 4]);
             s.base_color = e.exprs.multiply(s.base_color, factor);
+            if let Some((_, color)) = &mut s.translucent {
+                *color = e.exprs.multiply(*color, factor);
+            }
             let number = e.exprs.extract(factor, 0);
             s.specular = e.exprs.multiply(s.specular, number);
             s
@@ -152,13 +155,19 @@ fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surfa
             }
         }
         "oren_nayar_diffuse_bsdf" | "burley_diffuse_bsdf" | "subsurface_bsdf" | "translucent_bsdf" => {
-            if matches!(category, "subsurface_bsdf" | "translucent_bsdf") {
+            if category == "subsurface_bsdf" {
                 e.warn(node, format!("{category} is rendered as diffuse reflection of the same color"));
             }
             let default = if category == "translucent_bsdf" { 1.0 } else { 0.18 };
             let mut s = black(e);
             s.base_color = e.input(node, "color", [default; 4]);
             weigh(e, node, &mut s.base_color);
+            if category == "translucent_bsdf" {
+                s.translucent = Some((e.exprs.number(1.0), s.base_color));
+            }
+            if category == "oren_nayar_diffuse_bsdf" {
+                s.diffuse_roughness = e.scalar(node, "roughness", 0.0);
+            }
             s.normal = e.optional(node, "normal");
             s
         }
@@ -187,12 +196,13 @@ fn layered(e: &mut Evaluator<'_, '_>, top: usize, base: Option<Surface>, depth: 
             }
             if !e.exprs.is(base.specular, 0.0) || e.exprs.is(base.metallic, 1.0) {
                 let (weight, roughness, ior) = (over.specular, over.roughness, over.ior);
-                base.coat = Some(super::surface::Coat { weight, roughness, ior, normal: over.normal });
+                let tint = e.exprs.number(1.0);
+                base.coat = Some(super::surface::Coat { weight, roughness, ior, tint, normal: over.normal });
                 return Some(base);
             }
             let normal = base.normal.or(over.normal);
-            let (base_color, transmission, sheen) = (base.base_color, base.transmission, base.sheen);
-            Some(Surface { base_color, transmission, sheen, normal, ..over })
+            let Surface { base_color, transmission, sheen, translucent, diffuse_roughness, .. } = base;
+            Some(Surface { base_color, transmission, sheen, translucent, diffuse_roughness, normal, ..over })
         }
         "sheen_bsdf" => {
             base.sheen = Some(sheen(e, top));
@@ -317,8 +327,11 @@ fn mixed(e: &mut Evaluator<'_, '_>, node: usize, bg: Surface, fg: Surface, amoun
             Some((x.mix(color(a), color(b), amount), roughness))
         }
     };
+    let (base_color, translucent) = diffuse(x, &bg, &fg, amount);
     Surface {
-        base_color: x.mix(bg.base_color, fg.base_color, amount),
+        base_color,
+        translucent,
+        diffuse_roughness: x.mix(bg.diffuse_roughness, fg.diffuse_roughness, amount),
         metallic: x.mix(bg.metallic, fg.metallic, amount),
         roughness: match (reflects(x, &bg), reflects(x, &fg)) {
             (true, true) => x.mix(bg.roughness, fg.roughness, amount),
@@ -335,6 +348,23 @@ fn mixed(e: &mut Evaluator<'_, '_>, node: usize, bg: Surface, fg: Surface, amoun
         normal: bg.normal.or(fg.normal),
         ..bg
     }
+}
+
+/// Base color and passage of the diffuse parts of two surfaces: on each side what they put there.
+fn diffuse(x: &mut super::expr::Exprs, bg: &Surface, fg: &Surface, amount: Id) -> (Id, Option<(Id, Id)>) {
+    if bg.translucent.is_none() && fg.translucent.is_none() {
+        return (x.mix(bg.base_color, fg.base_color, amount), None);
+    }
+    let (zero, one) = (x.number(0.0), x.number(1.0));
+    let [(below, a, a_color), (above, b, b_color)] = [bg, fg].map(|s| {
+        let (weight, color) = s.translucent.unwrap_or((zero, zero));
+        let kept = x.subtract(one, weight);
+        (x.multiply(s.base_color, kept), weight, x.multiply(color, weight))
+    });
+    let (reflected, passes) = (x.mix(below, above, amount), x.mix(a, b, amount));
+    let (color, stays) = (x.mix(a_color, b_color, amount), x.subtract(one, passes));
+    let (base, color) = (x.math(Math::Divide, &[reflected, stays]), x.math(Math::Divide, &[color, passes]));
+    (base, Some((passes, color)))
 }
 
 /// Whether a surface has anything that its roughness shows in.

@@ -134,7 +134,7 @@ impl<'m, 'a> Evaluator<'m, 'a> {
             "texcoord" => Some(self.texcoord("st".into())),
             "UsdTransform2d" => texture::transform(self, node),
             "place2d" => texture::place(self, node),
-            "geompropvalue" | "UsdPrimvarReader" | "geomcolor" => self.primvar(node),
+            "geompropvalue" | "geompropvalueuniform" | "UsdPrimvarReader" | "geomcolor" => self.primvar(node),
             "separate2" | "separate3" | "separate4" => {
                 let id = self.input(node, "in", [0.0; 4]);
                 Some(self.exprs.extract(id, place(output)?))

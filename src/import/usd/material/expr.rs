@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::desc::graph::{Blend, Function, Math, Value as V};
+use crate::desc::graph::{Blend, Function, Leaf, Math, Procedural, Value as V};
 use crate::desc::{TextureRef, TextureTransform};
 
 /// An expression in an [`Exprs`].
@@ -44,6 +44,10 @@ pub(super) enum Op {
         name: Arc<str>,
         fallback: V,
     },
+    /// What is known of the hit.
+    Leaf(Leaf),
+    /// A procedural texture.
+    Procedural(Procedural, Vec<Id>),
     Apply(Function, Vec<Id>),
 }
 
@@ -97,12 +101,19 @@ impl Exprs {
         needed[root.0 as usize] = true;
         for i in (0..needed.len()).rev() {
             match (needed[i], &self.ops[i]) {
-                (true, Op::Apply(_, args)) => args.iter().for_each(|arg| needed[arg.0 as usize] = true),
+                (true, Op::Apply(_, args) | Op::Procedural(_, args)) => {
+                    args.iter().for_each(|arg| needed[arg.0 as usize] = true)
+                }
                 (true, Op::Image { uv, .. }) => needed[uv.0 as usize] = true,
                 _ => {}
             }
         }
         (0..needed.len() as u32).filter(|i| needed[*i as usize]).map(Id).collect()
+    }
+
+    /// True where `root` goes by what is known of the hit.
+    pub fn has_leaf(&self, root: Id) -> bool {
+        self.needed(root).into_iter().any(|id| matches!(self.op(id), Op::Leaf(_)))
     }
 
     pub fn math(&mut self, math: Math, args: &[Id]) -> Id {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::Materials;
 use super::expr::{Exprs, Id, Lookup, Op};
 use crate::desc::TextureTransform;
-use crate::desc::graph::{Function, Graph, Leaf, Math, Value, ValueId};
+use crate::desc::graph::{self, Function, Graph, Leaf, Math, Value, ValueId};
 use crate::desc::{ColorSpace, ImageDesc};
 
 /// The graph of a material in the making.
@@ -49,6 +49,11 @@ impl Lowering {
             Op::Primvar { name, fallback } => {
                 self.graph.leaf(Leaf::Attribute { name: name.clone(), fallback: *fallback })
             }
+            Op::Leaf(leaf) => self.graph.leaf(leaf.clone()),
+            Op::Procedural(texture, args) => {
+                let args = args.iter().map(|arg| self.at(*arg)).collect();
+                self.graph.push(graph::Op::Procedural(*texture, args))
+            }
             Op::Apply(function, args) => {
                 let args: Vec<ValueId> = args.iter().map(|arg| self.at(*arg)).collect();
                 self.graph.apply(function.clone(), &args)
@@ -90,6 +95,8 @@ impl Lowering {
                     [u, v, 0.0, 1.0]
                 }
                 Op::Primvar { fallback, .. } => *fallback,
+                // Anywhere, seen from ahead; signed noise is 0 in the mean.
+                Op::Leaf(_) | Op::Procedural(..) => [0.0, 0.0, 0.0, 1.0],
                 Op::Apply(function, args) => {
                     let args: Vec<Value> = args.iter().map(|arg| known[arg]).collect();
                     function.eval(&args)

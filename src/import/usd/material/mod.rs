@@ -10,6 +10,7 @@ mod closure;
 mod color;
 mod evaluate;
 mod expr;
+mod geometry;
 mod lower;
 mod models;
 mod mtlx;
@@ -183,6 +184,14 @@ impl<'a> Materials<'a> {
         sets.sort_unstable();
         sets.dedup();
         sets
+    }
+
+    /// Names of the primvars that the graph of material `index` asks for.
+    pub fn named_primvars(&self, index: u32) -> impl Iterator<Item = Arc<str>> {
+        self.get(index).into_iter().flat_map(|material| material.graph.ops()).filter_map(|op| match op {
+            Op::Leaf(Leaf::Attribute { name, .. }) => Some(name.clone()),
+            _ => None,
+        })
     }
 
     /// Moves everything into `scene`.

@@ -8,7 +8,7 @@ use super::evaluate::Evaluator;
 use super::expr::Id;
 use super::network::Source;
 use super::surface::{Alpha, Coat, Film, Surface};
-use crate::desc::graph::Function;
+use crate::desc::graph::{Function, Math};
 
 /// Reflectance at normal incidence of index 1.5.
 const F0_OF_1_5: f64 = 0.04;
@@ -28,7 +28,7 @@ pub(super) fn read(e: &mut Evaluator<'_, '_>, source: &Source) -> Option<Surface
 }
 
 /// UsdPreviewSurface. Opacity is alpha in both opacity modes, as Cycles' Hydra delegate has it; Storm keeps
-/// the highlights of "transparent" surfaces.
+/// the highlights of "transparent" surfaces, which is told of those that ask for it.
 fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let mut s = Surface::new(e);
     s.base_color = e.input(node, "diffuseColor", [0.18, 0.18, 0.18, 1.0]);
@@ -37,7 +37,8 @@ fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     s.ior = e.scalar(node, "ior", 1.5);
     s.normal = e.optional(node, "normal");
     let (weight, roughness) = (e.scalar(node, "clearcoat", 0.0), e.scalar(node, "clearcoatRoughness", 0.01));
-    s.coat = Some(Coat { weight, roughness, ior: s.ior, normal: s.normal });
+    let tint = e.exprs.number(1.0);
+    s.coat = Some(Coat { weight, roughness, ior: s.ior, tint, normal: s.normal });
     if e.uniform(node, "useSpecularWorkflow", 0.0) == 0.0 {
         s.metallic = e.scalar(node, "metallic", 0.0);
     } else {
@@ -48,6 +49,9 @@ fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     }
     s.opacity = e.scalar(node, "opacity", 1.0);
     let threshold = e.uniform(node, "opacityThreshold", 0.0);
+    if e.node(node).text("opacityMode") == Some("transparent") && !e.exprs.is(s.opacity, 1.0) && threshold <= 0.0 {
+        e.warn(node, "opacityMode \"transparent\" is rendered as \"presence\": highlights fade with the surface");
+    }
     if threshold > 0.0 {
         s.alpha = Alpha::Mask(threshold);
     }
@@ -65,16 +69,18 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let base = weighted(e, node, ["base", "base_color"], [1.0, 0.8]);
     let subsurface = e.scalar(node, "subsurface", 0.0);
     let beneath = e.input(node, "subsurface_color", [1.0; 4]);
-    s.base_color = subsurface_as_diffuse(e, node, base, beneath, subsurface);
+    s.thin_walled = e.uniform(node, "thin_walled", 0.0) != 0.0;
+    scatter_beneath(e, node, &mut s, [base, beneath, subsurface], 1.0);
+    s.diffuse_roughness = e.scalar(node, "diffuse_roughness", 0.0);
     s.metallic = e.scalar(node, "metalness", 0.0);
     s.specular = e.scalar(node, "specular", 1.0);
     s.specular_color = e.input(node, "specular_color", [1.0; 4]);
+    s.metal_edge = s.specular_color;
     s.roughness = e.scalar(node, "specular_roughness", 0.2);
     s.ior = e.scalar(node, "specular_IOR", 1.5);
     let rotation = e.uniform(node, "specular_rotation", 0.0) * std::f64::consts::TAU;
     s.anisotropy = Some((e.scalar(node, "specular_anisotropy", 0.0), rotation));
     s.transmission = e.scalar(node, "transmission", 0.0);
-    s.thin_walled = e.uniform(node, "thin_walled", 0.0) != 0.0;
     transmit(e, node, &mut s);
     let abbe = e.uniform(node, "transmission_dispersion", 0.0);
     s.dispersion = if abbe > 0.0 { 20.0 / abbe } else { 0.0 };
@@ -83,9 +89,9 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         weight: e.scalar(node, "coat", 0.0),
         roughness: e.scalar(node, "coat_roughness", 0.1),
         ior: e.scalar(node, "coat_IOR", 1.5),
+        tint: e.input(node, "coat_color", [1.0; 4]),
         normal: e.optional(node, "coat_normal"),
     });
-    tint_by_coat(e, node, &mut s);
     let sheen = weighted(e, node, ["sheen", "sheen_color"], [0.0, 1.0]);
     s.sheen = Some((sheen, e.scalar(node, "sheen_roughness", 0.3)));
     s.film = Some(Film {
@@ -105,10 +111,14 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let base = weighted(e, node, ["base_weight", "base_color"], [1.0, 0.8]);
     let subsurface = e.scalar(node, "subsurface_weight", 0.0);
     let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
-    s.base_color = subsurface_as_diffuse(e, node, base, beneath, subsurface);
+    s.thin_walled = e.uniform(node, "geometry_thin_walled", 0.0) != 0.0;
+    let forward = 0.5 + 0.5 * e.uniform(node, "subsurface_scatter_anisotropy", 0.0).clamp(-1.0, 1.0);
+    scatter_beneath(e, node, &mut s, [base, beneath, subsurface], forward);
+    s.diffuse_roughness = e.scalar(node, "base_diffuse_roughness", 0.0);
     s.metallic = e.scalar(node, "base_metalness", 0.0);
     s.specular = e.scalar(node, "specular_weight", 1.0);
     s.specular_color = e.input(node, "specular_color", [1.0; 4]);
+    s.metal_edge = s.specular_color;
     s.roughness = e.scalar(node, "specular_roughness", 0.3);
     s.ior = e.scalar(node, "specular_ior", 1.5);
     let anisotropy = e.scalar(node, "specular_roughness_anisotropy", 0.0);
@@ -116,7 +126,6 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         s.anisotropy = Some((anisotropy, closure::tangent(e, node, "geometry_tangent")));
     }
     s.transmission = e.scalar(node, "transmission_weight", 0.0);
-    s.thin_walled = e.uniform(node, "geometry_thin_walled", 0.0) != 0.0;
     transmit(e, node, &mut s);
     let abbe = e.uniform(node, "transmission_dispersion_abbe_number", 20.0);
     let scale = e.uniform(node, "transmission_dispersion_scale", 0.0);
@@ -125,9 +134,9 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         weight: e.scalar(node, "coat_weight", 0.0),
         roughness: e.scalar(node, "coat_roughness", 0.0),
         ior: e.scalar(node, "coat_ior", 1.6),
+        tint: e.input(node, "coat_color", [1.0; 4]),
         normal: e.optional(node, "geometry_coat_normal"),
     });
-    tint_by_coat(e, node, &mut s);
     let fuzz = weighted(e, node, ["fuzz_weight", "fuzz_color"], [0.0, 1.0]);
     s.sheen = Some((fuzz, e.scalar(node, "fuzz_roughness", 0.5)));
     let micrometres = e.scalar(node, "thin_film_thickness", 0.5);
@@ -171,6 +180,7 @@ fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         weight: e.scalar(node, "clearcoat", 0.0),
         roughness: e.scalar(node, "clearcoat_roughness", 0.0),
         ior: e.exprs.number(1.5),
+        tint: e.exprs.number(1.0),
         normal: e.optional(node, "clearcoat_normal"),
     });
     s.emission = weighted(e, node, ["emissive_strength", "emissive"], [1.0, 0.0]);
@@ -212,21 +222,32 @@ fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
     }
 }
 
-fn subsurface_as_diffuse(e: &mut Evaluator<'_, '_>, node: usize, base: Id, beneath: Id, weight: Id) -> Id {
-    if !e.exprs.is(weight, 0.0) {
-        e.warn(node, "its subsurface scattering is rendered as diffuse reflection of the same color");
+/// The diffuse part: `base`, and by its weight what light that is scattered `beneath` comes to. In a thin wall
+/// the share `forward` of that leaves on the other side; elsewhere it is reflected where it came in.
+fn scatter_beneath(
+    e: &mut Evaluator<'_, '_>,
+    node: usize,
+    s: &mut Surface,
+    [base, beneath, weight]: [Id; 3],
+    forward: f64,
+) {
+    if e.exprs.is(weight, 0.0) {
+        s.base_color = base;
+        return;
     }
-    e.exprs.mix(base, beneath, weight)
-}
-
-/// A coat's color, which the description lacks, tints what lies beneath.
-fn tint_by_coat(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
-    let color = e.input(node, "coat_color", [1.0; 4]);
-    let Some(coat) = s.coat.filter(|coat| !e.exprs.is(coat.weight, 0.0) && !e.exprs.is(color, 1.0)) else { return };
-    e.warn(node, "its coat_color tints the base color instead");
-    let one = e.exprs.number(1.0);
-    let tint = e.exprs.mix(one, color, coat.weight);
-    s.base_color = e.exprs.multiply(s.base_color, tint);
+    if !s.thin_walled {
+        e.warn(node, "its subsurface scattering is rendered as diffuse reflection of the same color");
+        s.base_color = e.exprs.mix(base, beneath, weight);
+        return;
+    }
+    let x = &mut e.exprs;
+    let (passes, one) = (x.scale(weight, forward), x.number(1.0));
+    // What stays on this side is mixed by what is left of the weights.
+    let (kept, back) = (x.subtract(one, weight), x.scale(weight, 1.0 - forward));
+    let (of_base, of_beneath) = (x.multiply(base, kept), x.multiply(beneath, back));
+    let (sum, stays) = (x.add(of_base, of_beneath), x.subtract(one, passes));
+    s.base_color = x.math(Math::Divide, &[sum, stays]);
+    s.translucent = Some((passes, beneath));
 }
 
 fn left_out(e: &mut Evaluator<'_, '_>, node: usize, input: &str, what: &str) {

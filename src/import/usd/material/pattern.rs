@@ -2,6 +2,7 @@
 
 use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
+use super::geometry;
 use crate::desc::graph::{Function as F, Math};
 
 /// Names of the inputs of a function, with their defaults.
@@ -115,8 +116,8 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
         }
         "rotate2d" => {
             let a = e.input(node, "in", [0.0; 4]);
-            let amount = e.uniform(node, "amount", 0.0);
-            super::texture::rotate(e, a, -amount.to_radians())
+            let amount = e.scalar(node, "amount", 0.0);
+            super::texture::rotate_by(e, a, amount, -1.0)
         }
         "rotate3d" => super::texture::rotate_around(e, node)?,
         "ramplr" | "ramptb" | "splitlr" | "splittb" => ramp(e, node, category),
@@ -126,8 +127,9 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
             let (top, bottom) = (e.exprs.mix(corner[0], corner[1], u), e.exprs.mix(corner[2], corner[3], u));
             e.exprs.mix(bottom, top, v)
         }
-        // Tangent space: x along the tangent, z along the normal.
-        "normal" => e.exprs.constant([0.0, 0.0, 1.0, 1.0]),
+        "position" | "normal" | "viewdirection" => geometry::vector(e, node, category),
+        "noise2d" | "noise3d" | "fractal2d" | "fractal3d" if count == 1 => geometry::noise(e, node, category),
+        "checkerboard" => geometry::checkerboard(e, node),
         "normalmap" => {
             let map = e.input(node, "in", [0.5, 0.5, 1.0, 1.0]);
             let double = e.exprs.scale(map, 2.0);

@@ -8,7 +8,7 @@ use super::lower::Lowering;
 use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
+    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -16,6 +16,12 @@ use crate::desc::{
 pub(super) struct Surface {
     pub base_color: Id,
     pub metallic: Id,
+    /// Of metal at grazing angles, over Schlick's curve.
+    pub metal_edge: Id,
+    /// 0 for Lambert's law.
+    pub diffuse_roughness: Id,
+    /// Share of the diffuse light that leaves on the other side, and its color.
+    pub translucent: Option<(Id, Id)>,
     /// Perceptual.
     pub roughness: Id,
     pub ior: Id,
@@ -46,6 +52,8 @@ pub(super) struct Coat {
     pub weight: Id,
     pub roughness: Id,
     pub ior: Id,
+    /// What is left of light that goes straight down and up.
+    pub tint: Id,
     pub normal: Option<Id>,
 }
 
@@ -93,6 +101,9 @@ impl Surface {
         Self {
             base_color: one,
             metallic: zero,
+            metal_edge: one,
+            diffuse_roughness: zero,
+            translucent: None,
             roughness: x.number(0.5),
             ior: x.number(1.5),
             specular: one,
@@ -125,16 +136,18 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
     };
     let mut colors = VertexColors { color, opacity };
     let mut material = MaterialDesc {
-        base_color: f.color("base color", base_color),
-        metallic: f.scalar("metalness", surface.metallic),
-        roughness: f.scalar("roughness", surface.roughness),
+        base_color: f.color(base_color),
+        metallic: f.scalar(surface.metallic),
+        metal_edge: f.color(surface.metal_edge),
+        diffuse_roughness: f.scalar(surface.diffuse_roughness),
+        roughness: f.scalar(surface.roughness),
         ior: f.number("index of refraction", surface.ior),
-        specular: f.scalar("specular weight", surface.specular),
-        specular_color: f.color("specular color", surface.specular_color),
-        transmission: f.scalar("transmission", surface.transmission),
+        specular: f.scalar(surface.specular),
+        specular_color: f.color(surface.specular_color),
+        transmission: f.scalar(surface.transmission),
         dispersion: surface.dispersion.max(0.0),
-        emission: f.color("emission", surface.emission),
-        alpha: f.scalar("opacity", alpha),
+        emission: f.color(surface.emission),
+        alpha: f.scalar(alpha),
         normal: surface.normal.and_then(|id| f.normal("normal", id)),
         occlusion: surface.occlusion.and_then(|id| f.occlusion(id)),
         ..MaterialDesc::default()
@@ -158,20 +171,24 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         });
     }
     material.coat = surface.coat.filter(|coat| !f.e.exprs.is(coat.weight, 0.0)).map(|coat| CoatDesc {
-        weight: f.scalar("coat weight", coat.weight),
-        roughness: f.scalar("coat roughness", coat.roughness),
+        weight: f.scalar(coat.weight),
+        roughness: f.scalar(coat.roughness),
         ior: f.number("coat index of refraction", coat.ior),
-        tint: ColorInput::constant([1.0; 3]),
+        tint: f.color(coat.tint),
         normal: coat.normal.and_then(|id| f.normal("coat normal", id)),
     });
-    material.sheen = surface.sheen.filter(|(color, _)| !f.e.exprs.is(*color, 0.0)).map(|(color, roughness)| {
-        SheenDesc { color: f.color("sheen color", color), roughness: f.scalar("sheen roughness", roughness) }
-    });
+    let translucent = surface.translucent.filter(|(weight, _)| !f.e.exprs.is(*weight, 0.0));
+    material.translucent =
+        translucent.map(|(weight, color)| TranslucentDesc { weight: f.scalar(weight), color: f.color(color) });
+    material.sheen = surface
+        .sheen
+        .filter(|(color, _)| !f.e.exprs.is(*color, 0.0))
+        .map(|(color, roughness)| SheenDesc { color: f.color(color), roughness: f.scalar(roughness) });
     material.iridescence =
         surface.film.filter(|film| !f.e.exprs.is(film.weight, 0.0) && !f.e.exprs.is(film.thickness, 0.0)).map(|film| {
-            let thickness = f.scalar("thin film thickness", film.thickness);
+            let thickness = f.scalar(film.thickness);
             IridescenceDesc {
-                weight: f.scalar("thin film weight", film.weight),
+                weight: f.scalar(film.weight),
                 ior: f.number("thin film index of refraction", film.ior),
                 thickness_min: 0.0,
                 thickness_max: 1.0,
@@ -196,8 +213,7 @@ struct Finisher<'e, 'm, 'a> {
 }
 
 impl Finisher<'_, '_, '_> {
-    fn color(&mut self, what: &str, id: Id) -> ColorInput {
-        let id = self.textures_only(what, id);
+    fn color(&mut self, id: Id) -> ColorInput {
         match self.e.exprs.op(id) {
             Op::Constant([r, g, b, _]) => ColorInput::constant([*r, *g, *b]),
             Op::Lookup(l) if l.bias[..3] == [0.0; 3] && is_color(l) => {
@@ -207,8 +223,7 @@ impl Finisher<'_, '_, '_> {
         }
     }
 
-    fn scalar(&mut self, what: &str, id: Id) -> ScalarInput {
-        let id = self.textures_only(what, id);
+    fn scalar(&mut self, id: Id) -> ScalarInput {
         match self.e.exprs.op(id) {
             Op::Constant(value) => ScalarInput::constant(value[0]),
             Op::Lookup(l) if l.bias[0] == 0.0 => {
@@ -229,7 +244,6 @@ impl Finisher<'_, '_, '_> {
     }
 
     fn mean(&mut self, what: &str, id: Id) -> V {
-        let id = self.textures_only(what, id);
         if let Some(value) = self.e.exprs.known(id) {
             return value;
         }
@@ -239,9 +253,13 @@ impl Finisher<'_, '_, '_> {
 
     /// A tangent-space normal, −1 to 1.
     fn normal(&mut self, what: &str, id: Id) -> Option<NormalInput> {
-        let id = self.textures_only(what, id);
         match self.e.exprs.op(id) {
             Op::Constant([x, y, ..]) if *x == 0.0 && *y == 0.0 => return None,
+            _ if self.is_own_normal(id) => return None,
+            _ if self.e.exprs.has_leaf(id) => {
+                self.e.warn(self.node, format!("its {what} is computed of vectors, which isn't read; left out"));
+                return None;
+            }
             // 2 t − 1, the first two times a factor, which is how maps are stored.
             Op::Lookup(l) if is_color(l) && l.factor[2] == 2.0 && l.bias[2] == -1.0 => {
                 let scale = l.factor[0] / 2.0;
@@ -259,13 +277,21 @@ impl Finisher<'_, '_, '_> {
         Some(NormalInput::Graph(graph.normal_map(stored, one, tangent)))
     }
 
+    /// True for the surface's own normal, in whatever space.
+    fn is_own_normal(&self, id: Id) -> bool {
+        match self.e.exprs.op(id) {
+            Op::Leaf(leaf) => matches!(leaf, Leaf::Normal | Leaf::ObjectNormal),
+            Op::Apply(Function::Affine(_) | Function::Normalize(_), args) => self.is_own_normal(args[0]),
+            _ => false,
+        }
+    }
+
     /// The factor of an occlusion is its strength.
     fn occlusion(&mut self, id: Id) -> Option<ScalarInput> {
-        let id = self.textures_only("occlusion", id);
         if self.e.exprs.known(id).is_some() {
             return None;
         }
-        let input = self.scalar("occlusion", id);
+        let input = self.scalar(id);
         if input.factor == 1.0 {
             return Some(input);
         }
@@ -297,37 +323,6 @@ impl Finisher<'_, '_, '_> {
             }
         }
         (None, id)
-    }
-
-    /// The expression with primvars replaced by their fallbacks.
-    fn textures_only(&mut self, what: &str, id: Id) -> Id {
-        let needed = self.e.exprs.needed(id);
-        let mut replaced: Vec<(Id, Id)> = Vec::new();
-        for old in needed {
-            match self.e.exprs.op(old).clone() {
-                Op::Primvar { name, fallback } => {
-                    let what =
-                        format!("its {what} goes by primvars:{name}, which isn't read there; the fallback is used");
-                    self.e.warn(self.node, what);
-                    let new = self.e.exprs.constant(fallback);
-                    replaced.push((old, new));
-                }
-                Op::Image { texture, uv } => {
-                    if let Some((_, new_uv)) = replaced.iter().find(|(old, _)| *old == uv) {
-                        let new = self.e.exprs.push(Op::Image { texture, uv: *new_uv });
-                        replaced.push((old, new));
-                    }
-                }
-                Op::Apply(function, args) if args.iter().any(|arg| replaced.iter().any(|(old, _)| old == arg)) => {
-                    let new = |arg: &Id| replaced.iter().find(|(old, _)| old == arg).map_or(*arg, |(_, new)| *new);
-                    let args: Vec<Id> = args.iter().map(new).collect();
-                    let new = self.e.exprs.apply(function, &args);
-                    replaced.push((old, new));
-                }
-                _ => {}
-            }
-        }
-        replaced.iter().find(|(old, _)| *old == id).map_or(id, |(_, new)| *new)
     }
 }
 

@@ -6,8 +6,9 @@ use super::color;
 use super::evaluate::Evaluator;
 use super::expr::{Id, Lookup, Op, placement};
 use super::network::Value;
-use crate::desc::graph::{Math, Value as V};
+use crate::desc::graph::{Function, Math, Value as V};
 use crate::desc::{Filter, PixelData, TextureDesc, TextureRef, Wrap};
+use crate::math::{DMat3, DVec3};
 
 /// A lookup as a node asks for it.
 struct Wish<'n> {
@@ -149,9 +150,9 @@ fn look_up(e: &mut Evaluator<'_, '_>, node: usize, wish: &Wish<'_>) -> Result<Id
 pub(super) fn transform(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let uv = e.optional(node, "in").unwrap_or_else(|| e.texcoord("st".into()));
     let scale = e.input(node, "scale", [1.0; 4]);
-    let (angle, offset) = (e.uniform(node, "rotation", 0.0), e.input(node, "translation", [0.0; 4]));
+    let (angle, offset) = (e.scalar(node, "rotation", 0.0), e.input(node, "translation", [0.0; 4]));
     let scaled = e.exprs.multiply(uv, scale);
-    let turned = rotate(e, scaled, angle.to_radians());
+    let turned = rotate_by(e, scaled, angle, 1.0);
     Some(e.exprs.add(turned, offset))
 }
 
@@ -160,16 +161,16 @@ pub(super) fn place(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
     let (pivot, offset) = (e.input(node, "pivot", [0.0; 4]), e.input(node, "offset", [0.0; 4]));
     let scale = e.input(node, "scale", [1.0; 4]);
-    let angle = -e.uniform(node, "rotate", 0.0).to_radians();
+    let angle = e.scalar(node, "rotate", 0.0);
     let offset_first = e.uniform(node, "operationorder", 0.0) != 0.0;
     let mut uv = e.exprs.subtract(uv, pivot);
     if offset_first {
         uv = e.exprs.subtract(uv, offset);
-        uv = rotate(e, uv, angle);
+        uv = rotate_by(e, uv, angle, -1.0);
         uv = e.exprs.math(Math::Divide, &[uv, scale]);
     } else {
         uv = e.exprs.math(Math::Divide, &[uv, scale]);
-        uv = rotate(e, uv, angle);
+        uv = rotate_by(e, uv, angle, -1.0);
         uv = e.exprs.subtract(uv, offset);
     }
     Some(e.exprs.add(uv, pivot))
@@ -191,7 +192,22 @@ pub(super) fn rotate(e: &mut Evaluator<'_, '_>, uv: Id, angle: f64) -> Id {
     e.exprs.add(straight, across)
 }
 
-/// rotate3d around z, which is how Blender turns texture coordinates. MaterialX turns clockwise (`v · M`);
+/// The same by an angle in degrees times `sense`, which may vary over the surface.
+pub(super) fn rotate_by(e: &mut Evaluator<'_, '_>, uv: Id, degrees: Id, sense: f64) -> Id {
+    if let Some([angle, ..]) = e.exprs.known(degrees) {
+        return rotate(e, uv, sense * angle.to_radians());
+    }
+    let x = &mut e.exprs;
+    let angle = x.extract(degrees, 0);
+    let angle = x.scale(angle, sense.to_radians());
+    let (sin, cos) = (x.math(Math::Sine, &[angle]), x.math(Math::Cosine, &[angle]));
+    let (u, v, minus) = (x.extract(uv, 0), x.extract(uv, 1), x.scale(sin, -1.0));
+    let (uc, vs, us, vc) = (x.multiply(u, cos), x.multiply(v, minus), x.multiply(u, sin), x.multiply(v, cos));
+    let (u, v) = (x.add(uc, vs), x.add(us, vc));
+    x.apply(Function::Combine, &[u, v])
+}
+
+/// rotate3d; around z it is how Blender turns texture coordinates. MaterialX turns clockwise (`v · M`);
 /// Blender's exporter writes angles that are meant the other way.
 pub(super) fn rotate_around(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let value = e.optional(node, "in")?;
@@ -203,12 +219,17 @@ pub(super) fn rotate_around(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id
     if angle == 0.0 {
         return Some(value);
     }
-    if axis[0] != 0.0 || axis[1] != 0.0 || axis[2] == 0.0 {
-        e.warn(node, "turns around another axis than z, which isn't computed; left out");
-        return Some(value);
-    }
     let clockwise = if e.materials.reading.blender { -1.0 } else { 1.0 };
-    Some(rotate(e, value, -clockwise * axis[2].signum() * angle))
+    if axis[0] == 0.0 && axis[1] == 0.0 && axis[2] != 0.0 {
+        return Some(rotate(e, value, -clockwise * axis[2].signum() * angle));
+    }
+    let Some(axis) = DVec3::new(axis[0], axis[1], axis[2]).try_normalize() else {
+        e.warn(node, "turns around an axis without direction; left out");
+        return Some(value);
+    };
+    let m = DMat3::from_axis_angle(axis, -clockwise * angle).transpose();
+    let rows = [m.x_axis, m.y_axis, m.z_axis].map(|row| [row.x, row.y, row.z, 0.0]);
+    Some(e.exprs.apply(Function::Affine(Box::new(rows)), &[value]))
 }
 
 impl super::Materials<'_> {

@@ -28,7 +28,9 @@ pub(in super::super) struct Curves {
     basis: Basis,
     wrap: Wrap,
     widths: Option<Data<1>>,
-    primvars: Primvars,
+    /// Values of points are those at the ends of pieces.
+    pub(super) from_hermite: bool,
+    pub(super) primvars: Primvars,
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
@@ -117,7 +119,7 @@ pub(super) fn read(
     if odd > 0 {
         reading.warn(prim.path(), format!("{odd} curves have a number of points that their basis has no use for"));
     }
-    Some(Curves { points, counts, basis, wrap, widths, primvars, motion })
+    Some(Curves { points, counts, basis, wrap, widths, primvars, motion, from_hermite })
 }
 
 /// Cubic pieces between points with tangents.
@@ -146,7 +148,7 @@ fn as_bezier(points: &[[f32; 3]], tangents: &[[f32; 3]], counts: &[i32]) -> (Vec
 
 impl Curves {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { mut points, counts, basis, wrap, widths, primvars, motion } = self;
+        let Self { mut points, counts, basis, wrap, widths, primvars, motion, .. } = self;
         let bad = mend_points(&mut points);
         let curves = lay_out(&counts, points.len(), basis, wrap, place, warnings);
         let joints = curves.last().map_or(0, |curve| curve.joints.end);
@@ -251,6 +253,7 @@ impl Set<'_> {
             uvs: channels.uvs.iter().map(|(name, channel)| (name.clone(), along.channel(channel))).collect(),
             color: channels.color.as_ref().map(|channel| along.channel(channel)),
             opacity: channels.opacity.as_ref().map(|channel| along.channel(channel)),
+            named: channels.named.iter().map(|(name, channel)| (name.clone(), along.channel(channel))).collect(),
         }
     }
 }

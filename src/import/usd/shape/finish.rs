@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::Wants;
 use super::polygons::{PASS, Triangles, cross};
 use super::primvar::{Channel, Counts, Primvars};
-use crate::desc::{Attribute, MeshDesc, Motion};
+use crate::desc::{Attribute, MeshDesc, Motion, NamedAttribute};
 use crate::error::{Place, Warnings};
 use crate::import::tangents;
 use crate::math::{DVec3, Vec3};
@@ -20,6 +20,8 @@ pub(super) struct Channels {
     pub uvs: Vec<(Arc<str>, Channel<2>)>,
     pub color: Option<Channel<3>>,
     pub opacity: Option<Channel<1>>,
+    /// What graphs ask for by name.
+    pub named: Vec<(Arc<str>, Channel<4>)>,
 }
 
 /// A shape whose triangles are made.
@@ -35,13 +37,18 @@ pub(super) struct Surface {
 impl Channels {
     /// Those of `primvars` that are wanted.
     pub fn new(primvars: Primvars, counts: &Counts, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Self {
-        let Primvars { uvs, color, opacity, normals, .. } = primvars;
+        let Primvars { uvs, color, opacity, normals, named, .. } = primvars;
         let mut fitting = Vec::new();
         for data in uvs.into_iter().filter(|data| wants.uv_sets.contains(&data.name)) {
             let name = data.name.clone();
             fitting.extend(data.fit(counts, place, warnings).map(|channel| (name, channel)));
         }
+        let named = named.into_iter().filter_map(|data| {
+            let name = data.name.clone();
+            data.fit(counts, place, warnings).map(|channel| (name, channel))
+        });
         Self {
+            named: named.collect(),
             normals: normals.and_then(|data| data.fit(counts, place, warnings)),
             uvs: fitting,
             color: color.filter(|_| wants.display_color).and_then(|data| data.fit(counts, place, warnings)),
@@ -64,7 +71,8 @@ impl Channels {
         let uvs = self.uvs.iter_mut().fold(false, |loses, (_, channel)| first(channel) | loses);
         let color = self.color.as_mut().is_some_and(first);
         let opacity = self.opacity.as_mut().is_some_and(first);
-        uvs | color | opacity
+        let named = self.named.iter_mut().fold(false, |loses, (_, channel)| first(channel) | loses);
+        uvs | color | opacity | named
     }
 }
 
@@ -78,7 +86,7 @@ impl Surface {
             return None;
         }
         let spread = Spread { triangles: &triangles, points: points.len() };
-        let Channels { normals, uvs, color, opacity } = channels;
+        let Channels { normals, uvs, color, opacity, named } = channels;
         let mut normals = normals.map(|channel| spread.attribute(channel));
         if let Some(normals) = &mut normals {
             mend_normals(normals, &points, &triangles, place, warnings);
@@ -101,6 +109,8 @@ impl Surface {
             Some(faces) => faces.iter().map(|&face| slots[face as usize]).collect(),
             None => slots,
         });
+        let of_name = |(name, channel)| NamedAttribute { name, values: spread.attribute(channel) };
+        let attributes = named.into_iter().map(of_name).collect();
         let tangents = wants.tangents.and_then(|set| {
             let uvs = sets.get(set as usize)?;
             let tangents = tangents::generate(&points, normals.as_ref(), uvs, &triangles.points);
@@ -118,7 +128,7 @@ impl Surface {
             uvs: sets,
             tangents,
             colors,
-            attributes: Vec::new(),
+            attributes,
             generated: None,
             material_slots,
             motion,

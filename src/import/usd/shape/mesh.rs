@@ -26,7 +26,7 @@ pub(in super::super) struct Mesh {
     flipped: bool,
     /// `None` for a mesh of flat faces.
     rules: Option<Rules>,
-    primvars: Primvars,
+    pub(super) primvars: Primvars,
     pub(super) subsets: Subsets,
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }

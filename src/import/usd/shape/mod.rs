@@ -60,6 +60,8 @@ pub(super) struct Wants {
     pub tangents: Option<u32>,
     /// displayColor and displayOpacity as colours of the mesh.
     pub display_color: bool,
+    /// Primvars that graphs ask for by name.
+    pub named: Vec<Arc<str>>,
     /// True where instances have colours, which take the place of those that the shape lacks.
     pub instance_color: bool,
 }
@@ -77,6 +79,22 @@ impl Source {
         match self {
             Self::Primitive(primitive) => primitive.likeness(),
             _ => None,
+        }
+    }
+
+    /// Reads the primvars that graphs ask for by `names`, and keeps them with the shape of `prim`, which inherits
+    /// `inherited`.
+    pub fn read_named(&mut self, reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], names: &[Arc<str>]) {
+        let (primvars, joined) = match self {
+            Self::Mesh(mesh) => (&mut mesh.primvars, false),
+            Self::Curves(curves) => (&mut curves.primvars, curves.from_hermite),
+            Self::Points(points) => (&mut points.primvars, false),
+            Self::Primitive(primitive) => (&mut primitive.primvars, false),
+            Self::StandIn(_) => return,
+        };
+        primvars.named = primvar::named(reading, prim, inherited, names);
+        if joined {
+            primvars.named.iter_mut().for_each(primvar::Data::at_joints);
         }
     }
 

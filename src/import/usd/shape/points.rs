@@ -19,7 +19,7 @@ use crate::math::Vec3;
 pub(in super::super) struct Points {
     points: Vec<[f32; 3]>,
     widths: Option<Data<1>>,
-    primvars: Primvars,
+    pub(super) primvars: Primvars,
     motion: Vec<Motion<Vec<[f32; 3]>>>,
 }
 
@@ -69,12 +69,13 @@ impl Points {
             return None;
         }
         let kept = Kept { of: count, kept };
-        let Channels { uvs, color, opacity, .. } = Channels::new(primvars, &counts, wants, place, warnings);
+        let Channels { uvs, color, opacity, named, .. } = Channels::new(primvars, &counts, wants, place, warnings);
         let channels = Channels {
             normals: None,
             uvs: uvs.into_iter().map(|(name, channel)| (name, kept.channel(channel))).collect(),
             color: color.map(|channel| kept.channel(channel)),
             opacity: opacity.map(|channel| kept.channel(channel)),
+            named: named.into_iter().map(|(name, channel)| (name, kept.channel(channel))).collect(),
         };
         let rounds = Rounds {
             points: kept.values(points),

@@ -19,7 +19,7 @@ use openusd_schemas::geom::Interpolation;
 pub(in super::super) struct Primitive {
     shape: Shape,
     axis: Axis,
-    primvars: Primvars,
+    pub(super) primvars: Primvars,
 }
 
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use openusd::usd::{Attribute, Prim};
 use openusd_schemas::geom::{Interpolation, Primvar, PrimvarsAPI};
 
 use super::super::stage::Reading;
-use super::values::{pairs, scalars, triples};
+use super::values::{graph_values, pairs, scalars, triples};
 use crate::error::{Place, Warnings};
 
 /// Values as authored, not yet held against the shape.
@@ -33,6 +33,8 @@ pub(super) struct Primvars {
     pub opacity: Option<Data<1>>,
     pub normals: Option<Data<3>>,
     pub widths: Option<Data<1>>,
+    /// What graphs ask for by name.
+    pub named: Vec<Data<4>>,
 }
 
 /// How many of what a shape has.
@@ -94,11 +96,27 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar]) ->
     primvars
 }
 
+/// Those of `names` that `prim` has, or inherits as one of `inherited`.
+pub(super) fn named(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], names: &[Arc<str>]) -> Vec<Data<4>> {
+    let api = PrimvarsAPI::from_prim_unchecked(prim.clone());
+    let found = |name: &Arc<str>| {
+        let own = api.primvar(name).ok();
+        let above = inherited.iter().filter(|primvar| primvar.primvar_name() == &**name).cloned();
+        own.into_iter().chain(above).find_map(|primvar| data(reading, &primvar, graph_values))
+    };
+    names.iter().filter_map(found).collect()
+}
+
 impl Primvars {
     /// True where nothing was found.
     pub fn is_empty(&self) -> bool {
-        let Self { uvs, color, opacity, normals, widths } = self;
-        uvs.is_empty() && color.is_none() && opacity.is_none() && normals.is_none() && widths.is_none()
+        let Self { uvs, color, opacity, normals, widths, named } = self;
+        uvs.is_empty()
+            && named.is_empty()
+            && color.is_none()
+            && opacity.is_none()
+            && normals.is_none()
+            && widths.is_none()
     }
 
     /// True where `primvar` has a value.

@@ -22,7 +22,7 @@ pub(super) struct Rounds {
 impl Rounds {
     pub fn finish(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> RoundsDesc {
         let Self { points, radii, strands, channels, motion } = self;
-        let Channels { uvs, color, opacity, .. } = channels;
+        let Channels { uvs, color, opacity, named, .. } = channels;
         let count = points.len();
         let uvs = uv_sets(uvs, wants, place, warnings, |channel| match channel {
             Some(channel) => by_point(channel, count).into_iter().map(finish::upside_down).collect(),
@@ -35,8 +35,18 @@ impl Rounds {
             let opacity = opacity.map_or_else(|| vec![[1.0]; count], |channel| by_point(channel, count));
             color.into_iter().zip(opacity).map(|(color, opacity)| rgba(color, opacity)).collect()
         });
-        let name = finish::name(place);
-        RoundsDesc { name, place: place.clone(), points, radii, strands, uvs, colors, material_slots: None, motion }
+        RoundsDesc {
+            name: finish::name(place),
+            place: place.clone(),
+            points,
+            radii,
+            strands,
+            uvs,
+            colors,
+            attributes: named.into_iter().map(|(name, channel)| (name, by_point(channel, count))).collect(),
+            material_slots: None,
+            motion,
+        }
     }
 }
 

@@ -109,7 +109,7 @@ impl Rules {
             depth,
         );
         let refine = Refine { refinement: &refinement, cage_corners, kept_corners: kept_corners.as_deref() };
-        let Channels { uvs, color, opacity, .. } = channels;
+        let Channels { uvs, color, opacity, named, .. } = channels;
         let (refined, normals) = refinement.surface(&points);
         let normals = normals.map(|normals| as_channel(normals, flipped));
         let channels = Channels {
@@ -117,6 +117,7 @@ impl Rules {
             uvs: uvs.into_iter().map(|(name, channel)| (name, refine.channel(channel))).collect(),
             color: color.map(|channel| refine.channel(channel)),
             opacity: opacity.map(|channel| refine.channel(channel)),
+            named: named.into_iter().map(|(name, channel)| (name, refine.channel(channel))).collect(),
         };
         let sources = refinement.sources();
         let sources = match &kept_faces {

@@ -2,6 +2,7 @@
 
 mod assets;
 mod materialx;
+mod nodes;
 mod preview;
 
 use std::path::Path;
