@@ -71,7 +71,7 @@ fn meshes_of_the_assets_are_those_of_usd_core() {
                 Some(parent) => PrimvarsAPI::from_prim_unchecked(parent).find_inheritable_primvars().unwrap(),
                 None => continue,
             };
-            let Some(source) = read(&reading, &prim, &inherited) else { continue };
+            let Some(source) = read(&reading, &prim, &inherited, None) else { continue };
             let mut warnings = reading.warnings.borrow_mut();
             let place = Place::default().at(prim.path().as_str());
             let Some(built) = build(source, &Wants::default(), 0, &place, &mut warnings) else { continue };
