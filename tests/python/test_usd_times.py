@@ -107,7 +107,7 @@ def test_newer_text_is_read_as_openusd_reads_it(tmp_path):
     def Xform "A" /* between */ { // after
         double3 xformOp:translate = (.5, -.25e1, 3.) // (1, 2, 3)
         string note = "// no comment, .5 no number, /* nothing */ = AnimationBlock"
-        string three = """a // \\""" .5 \\" /* b"""
+        string three = '''a // \\''' .5 \\' /* b'''
         asset there = @http://x//y.usda@
         uniform token[] xformOpOrder = ["xformOp:translate"]
         def Mesh "T" {

@@ -199,7 +199,7 @@ mod tests {
     use crate::math::Vec3;
 
     fn shape(kind: &str, primvar: &str) -> (MeshDesc, Vec<String>) {
-        let wants = Wants { display_color: true, uv_sets: vec!["st".into()], ..Wants::default() };
+        let wants = Wants { display_color: true, ..Wants::default() };
         let (built, told) = built(&format!("def {kind} \"S\" {{ {primvar} }}"), "/S", &wants, 0);
         (built.unwrap().into_mesh(), told)
     }

@@ -50,7 +50,7 @@ pub(in super::super) fn read(bytes: &[u8]) -> Option<Spline> {
         let [before, after] = [0, 1].map(|i| Tangent { width: widths[i], slope: slopes[i] });
         knots.push(Knot { time, value, value_before, before, after, next });
     }
-    Spline::new(kind, [before, after], loops, knots)
+    Spline::new(kind, [before, after], loops, knots).map(Spline::settled)
 }
 
 struct Bytes<'a>(&'a [u8]);

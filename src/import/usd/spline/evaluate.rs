@@ -21,6 +21,21 @@ impl Spline {
         value.is_finite().then_some(value)
     }
 
+    /// The curve as OpenUSD has it once read from a binary layer: tangents that lead back in time are shortened then,
+    /// and where the margins ask for it once more at evaluation, which moves upright places in the sixth digit.
+    pub(super) fn settled(mut self) -> Self {
+        if self.kind == Kind::Bezier {
+            for i in 1..self.knots.len() {
+                let [before, after] = [self.knots[i - 1], self.knots[i]];
+                if before.next == Next::Curved {
+                    let widths = forward([before.after.width, after.before.width], after.time - before.time);
+                    (self.knots[i - 1].after.width, self.knots[i].before.width) = (widths[0], widths[1]);
+                }
+            }
+        }
+        self
+    }
+
     /// Where the whole curve is repeated: the time within it, the side, and what is added to the value.
     fn turned(&self, rolled: &Rolled<'_>, time: f64) -> (f64, Side, f64) {
         let as_is = (time, Side::After, 0.0);
