@@ -37,7 +37,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         """Renders one view layer. Nothing may be raised from here: it would take Blender down."""
         try:
             self._render(depsgraph)
-        except Exception as error:  # noqa: BLE001
+        except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
             message = str(error) or type(error).__name__
             if not isinstance(error, (ValueError, OSError, NotImplementedError)):
                 message = f"Penumbra failed, which is a bug in it: {message}"
@@ -96,7 +96,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
     def _in_viewport(self, work):
         try:
             work()
-        except Exception as error:  # noqa: BLE001
+        except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
             traceback.print_exc()
             self.update_stats("Penumbra", str(error))
 

@@ -52,7 +52,7 @@ class Viewport:
             changed, self.stale, self.view = self.stale, False, view
             try:
                 self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)
-            except Exception as error:
+            except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
                 self.engine.update_stats("Penumbra", str(error))
                 return
         self._tell()

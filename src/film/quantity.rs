@@ -170,17 +170,17 @@ fn vector(v: Vec3) -> [f32; 4] {
 
 /// A set of quantities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Quantities(u32);
+pub struct Quantities(u64);
 
 impl Quantities {
     /// With `q` in it.
     pub const fn with(self, q: Quantity) -> Self {
-        Self(self.0 | 1 << q as u32)
+        Self(self.0 | 1 << q as u64)
     }
 
     /// True where `q` is in it.
     pub const fn contains(self, q: Quantity) -> bool {
-        self.0 & (1 << q as u32) != 0
+        self.0 & (1 << q as u64) != 0
     }
 
     /// Those of it that groups have (`true`), or that they do not have.

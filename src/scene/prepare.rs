@@ -80,7 +80,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, cache, &mut warnings);
+    let Materials { list: materials, textures, names, domes } =
+        materials::prepare(&mut desc, settings, cache, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);

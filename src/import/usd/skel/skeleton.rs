@@ -16,7 +16,10 @@ use crate::math::DAffine3;
 
 /// The skeletons that were met, each with where its poses come from; `None` for those that are broken.
 #[derive(Default)]
-pub(in super::super) struct Skeletons(RefCell<HashMap<(Path, Option<Path>), Option<Rc<Skeleton>>>>);
+pub(in super::super) struct Skeletons(RefCell<HashMap<Posed, Option<Rc<Skeleton>>>>);
+
+/// A skeleton and the animation that poses it.
+type Posed = (Path, Option<Path>);
 
 impl Skeletons {
     /// The skeleton at `path`, moved by `animation`; `None`, with a warning, where it can't be used.

@@ -91,8 +91,8 @@ impl Skin {
             let motion = &self.joints[joint].motion;
             // The shorter way round.
             let w = if motion.real.dot(pivot) < 0.0 { -w } else { w };
-            real = real + motion.real * w;
-            dual = dual + motion.dual * w;
+            real += motion.real * w;
+            dual += motion.dual * w;
         }
         let length = real.length();
         if length < 1e-10 {

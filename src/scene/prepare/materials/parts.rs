@@ -138,7 +138,7 @@ impl Builder<'_> {
     }
 
     fn film(&mut self, inputs: &mut Inputs<'_>, desc: &IridescenceDesc) -> Option<ThinFilm<ScalarInput>> {
-        if desc.weight.factor <= 0.0 || !(desc.thickness_min.max(desc.thickness_max) > 0.0) {
+        if desc.weight.factor <= 0.0 || desc.thickness_min.max(desc.thickness_max) <= 0.0 {
             return None;
         }
         let weight = self.scalar(inputs, &desc.weight);
