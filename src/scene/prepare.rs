@@ -78,7 +78,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } = materials::prepare(&mut desc, settings, cache, &mut warnings);
+    let Materials { list: materials, textures, names, domes } =
+        materials::prepare(&mut desc, settings, cache, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);

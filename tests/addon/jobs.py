@@ -176,6 +176,8 @@ def _as_principled(tree):
         if color.is_linked:
             tree.links.new(color.links[0].from_socket, shader.inputs["Base Color"])
         tree.links.new(shader.outputs[0], plain.outputs[0].links[0].to_socket)
+        # 4.2's USD exporter takes the first shader that there is, used or not.
+        tree.nodes.remove(plain)
 
 
 def through_the_doors(name, folder):

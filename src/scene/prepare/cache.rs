@@ -66,7 +66,11 @@ impl Cache {
     }
 
     /// The dome of these parts: as it was, or as `make` makes it.
-    pub(super) fn dome(&mut self, parts: impl FnOnce() -> DomeParts, make: impl FnOnce() -> Option<Dome>) -> Option<Dome> {
+    pub(super) fn dome(
+        &mut self,
+        parts: impl FnOnce() -> DomeParts,
+        make: impl FnOnce() -> Option<Dome>,
+    ) -> Option<Dome> {
         if !self.on {
             return make();
         }
