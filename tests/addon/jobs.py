@@ -170,7 +170,8 @@ def _as_principled(tree):
     """Diffuse BSDFs as what files can hold: Blender's glTF exporter knows none."""
     for plain in [node for node in tree.nodes if node.type == "BSDF_DIFFUSE"]:
         shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
-        shader.inputs["Roughness"].default_value, shader.inputs["Specular IOR Level"].default_value = 1.0, 0.0
+        # Specular levels are lost in USD files of 4.2.
+        shader.inputs["Roughness"].default_value = 1.0
         color = plain.inputs["Color"]
         shader.inputs["Base Color"].default_value = color.default_value
         if color.is_linked:
