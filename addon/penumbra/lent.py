@@ -74,7 +74,8 @@ def _poll_for_us(panel):
 
 def register():
     has_cycles = hasattr(bpy.types, "CYCLES_LIGHT_PT_light")
-    for panel in [panel for panel in _panels() if _is_lendable(panel, has_cycles)]:
+    # A panel of two base classes is found twice.
+    for panel in dict.fromkeys(panel for panel in _panels() if _is_lendable(panel, has_cycles)):
         _LENT[panel] = {name: panel.__dict__[name] for name in _NAMES if name in panel.__dict__}
         poll = _poll_for_us(panel)
         if poll is not None:

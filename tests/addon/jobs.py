@@ -170,12 +170,15 @@ def _as_principled(tree):
     """Diffuse BSDFs as what files can hold: Blender's glTF exporter knows none."""
     for plain in [node for node in tree.nodes if node.type == "BSDF_DIFFUSE"]:
         shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
-        shader.inputs["Roughness"].default_value, shader.inputs["Specular IOR Level"].default_value = 1.0, 0.0
+        # Specular levels are lost in USD files of 4.2.
+        shader.inputs["Roughness"].default_value = 1.0
         color = plain.inputs["Color"]
         shader.inputs["Base Color"].default_value = color.default_value
         if color.is_linked:
             tree.links.new(color.links[0].from_socket, shader.inputs["Base Color"])
         tree.links.new(shader.outputs[0], plain.outputs[0].links[0].to_socket)
+        # 4.2's USD exporter takes the first shader that there is, used or not.
+        tree.nodes.remove(plain)
 
 
 def through_the_doors(name, folder):
