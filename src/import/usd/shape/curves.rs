@@ -42,7 +42,7 @@ pub(super) fn read(
     skin: Option<&Bound>,
     kind: &str,
 ) -> Option<Curves> {
-    let mut points = mesh::points(reading, prim)?;
+    let mut points = mesh::points(reading, prim, skin)?;
     let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let mut counts: Vec<i32> = reading.value(prim, "curveVertexCounts").unwrap_or_default();
     let token = |name: &str| reading.value::<Token>(prim, name);

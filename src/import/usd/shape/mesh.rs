@@ -40,7 +40,7 @@ pub(super) fn read(
     skin: Option<&Bound>,
     shutter: Option<[f64; 2]>,
 ) -> Option<Mesh> {
-    let points = points(reading, prim)?;
+    let points = points(reading, prim, skin)?;
     let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let indices: Vec<i32> = reading.value(prim, "faceVertexIndices").unwrap_or_default();
     let counts: Vec<i32> = reading.value(prim, "faceVertexCounts").unwrap_or_default();
@@ -85,7 +85,7 @@ pub(super) fn read_tetrahedra(
     inherited: &[Primvar],
     skin: Option<&Bound>,
 ) -> Option<Mesh> {
-    let mut points = points(reading, prim)?;
+    let mut points = points(reading, prim, skin)?;
     let indices: Vec<i32> = match reading.value::<Value>(prim, "surfaceFaceVertexIndices") {
         Some(Value::Vec3iVec(faces)) => faces.iter().flat_map(|f| [f.x, f.y, f.z]).collect(),
         _ => Vec::new(),
@@ -115,8 +115,9 @@ pub(super) fn read_tetrahedra(
     })
 }
 
-/// The points of any point-based prim; `None`, with a warning, where there are none.
-pub(super) fn points(reading: &Reading<'_>, prim: &Prim) -> Option<Vec<[f32; 3]>> {
+/// The points of any point-based prim, moved on by velocities unless it follows the skeleton of `skin`; `None`, with a
+/// warning, where there are none.
+pub(super) fn points(reading: &Reading<'_>, prim: &Prim, skin: Option<&Bound>) -> Option<Vec<[f32; 3]>> {
     let attribute = prim.attribute("points");
     let points = primvar::array(reading, &attribute, triples, Interpolation::Vertex).map(|data| data.values);
     if points.as_ref().is_none_or(Vec::is_empty) {
@@ -125,7 +126,8 @@ pub(super) fn points(reading: &Reading<'_>, prim: &Prim) -> Option<Vec<[f32; 3]>
     }
     let points = points?;
     // Few prims have any, and others are not to be searched.
-    if reading.names(prim).iter().any(|name| name.as_str() == "velocities")
+    if skin.is_none()
+        && reading.names(prim).iter().any(|name| name.as_str() == "velocities")
         && let Some(flowing) = motion::flowing(reading, prim, points.len())
     {
         return Some(flowing.at(reading.time));

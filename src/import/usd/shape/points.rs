@@ -25,7 +25,7 @@ pub(in super::super) struct Points {
 
 /// Reads points that follow the skeleton of `skin`; `None`, with a warning, where there are none.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], skin: Option<&Bound>) -> Option<Points> {
-    let points = mesh::points(reading, prim)?;
+    let points = mesh::points(reading, prim, skin)?;
     let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
     let mut primvars = primvar::read(reading, prim, inherited);
     let widths = widths(reading, prim, &mut primvars);
