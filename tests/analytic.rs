@@ -177,6 +177,37 @@ fn coverage_and_transparency_count_in_ambient_occlusion() {
 }
 
 #[test]
+fn a_colored_film_tints_what_is_behind_it_and_its_shadow() {
+    let tint = [0.9, 0.2, 0.1];
+    let film = |builder: &mut Builder| {
+        builder.material(MaterialDesc {
+            base_color: ColorInput::constant([0.0; 3]),
+            specular: ScalarInput::constant(0.0),
+            transparency: ColorInput::constant(tint),
+            ..MaterialDesc::default()
+        })
+    };
+    // Seen through it, and in its shadow.
+    for (from, to) in [([0.0, 2.0, 0.0], DOWN), ([0.0; 3], [0.9, -0.1, 0.0])] {
+        let mut builder = Builder::default();
+        let (floor, film) = (builder.lambert(0.5), film(&mut builder));
+        builder.ground(100.0, floor);
+        builder.quad([-0.5, 1.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], film);
+        sun(&mut builder, 2.0, 0.0);
+        builder.look(from, to, 1e-6);
+        let settings = Settings { max_bounces: 0, ..settings("combined,shadow", 1024) };
+        let seen = picture(&builder.desc, 4, &settings);
+        let forced = Settings { effects: EffectsMode::All, ..settings };
+        assert_eq!(seen, picture(&builder.desc, 4, &forced));
+        let through = if from[1] > 1.0 { 2 } else { 1 };
+        for (c, t) in tint.into_iter().enumerate() {
+            close("Combined", mean(&seen, "Combined", c), 0.5 * 2.0 / PI * f64::powi(t, through), 2e-3);
+            close("Shadow", mean(&seen, "Shadow", c), t, 2e-3);
+        }
+    }
+}
+
+#[test]
 fn half_of_a_sun_is_half_of_its_shadow() {
     let mut builder = Builder::default();
     let material = builder.lambert(0.5);

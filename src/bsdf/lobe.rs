@@ -16,6 +16,11 @@ pub(super) trait Scatter {
     /// estimate, and never 0 where there is a value.
     fn albedo(&self) -> Sides;
 
+    /// What color passes hold of it.
+    fn color(&self) -> Sides {
+        self.albedo()
+    }
+
     /// The value towards `wi`.
     fn eval(&self, wo: Vec3, wi: Vec3) -> Value;
 
@@ -95,6 +100,11 @@ macro_rules! lobes {
             #[inline]
             fn albedo(&self) -> Sides {
                 match self { $(Self::$lobe(lobe) => lobe.albedo()),* }
+            }
+
+            #[inline]
+            fn color(&self) -> Sides {
+                match self { $(Self::$lobe(lobe) => lobe.color()),* }
             }
 
             #[inline]

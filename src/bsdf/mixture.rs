@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::lobe::{AnyLobe, Drawn, Scatter, Value};
+use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::surface::ThinFilm;
 use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
@@ -146,11 +146,20 @@ impl Bsdf {
         builder.finish()
     }
 
-    /// The directional albedo per class, which the color passes hold.
+    /// The directional albedo per class.
     pub fn albedo(&self) -> ByLobe {
+        self.sum(Scatter::albedo)
+    }
+
+    /// What the color passes hold: the albedo, but of a rough diffuse surface its color, as Cycles has it.
+    pub fn color(&self) -> ByLobe {
+        self.sum(Scatter::color)
+    }
+
+    fn sum(&self, of: impl Fn(&AnyLobe) -> Sides) -> ByLobe {
         let mut sum = ByLobe::BLACK;
         for term in &self.terms {
-            let sides = term.lobe.albedo();
+            let sides = of(&term.lobe);
             *sum.get_mut(term.class.above()) += term.color * sides.above;
             *sum.get_mut(term.class.below()) += term.color * sides.below;
         }

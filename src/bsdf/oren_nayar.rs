@@ -31,9 +31,10 @@ impl OrenNayar {
         let seen = albedo(a, b, wo.z);
         let lost = (1.0 - average).max(0.0);
         let missing = average / lost.max(1e-6) * (1.0 - seen).max(0.0);
-        // The value is multiplied by the color once more.
+        // The value is multiplied by the color once more. The paper has one factor of the color here; Cycles has two,
+        // which takes up to 3 % from a gray of 0.4 seen from above.
         let color = color.map(|c| c.clamp(0.0, 1.0));
-        let several = color.map(|c| FRAC_1_PI * c * missing / (1.0 - c * lost));
+        let several = color.map(|c| FRAC_1_PI * sqr(c) * missing / (1.0 - c * lost));
         let albedo = several.map(|s| seen + s * PI * lost);
         Self { a, b, several, albedo }
     }
@@ -56,6 +57,10 @@ fn g(cos: f32) -> f32 {
 impl Scatter for OrenNayar {
     fn albedo(&self) -> Sides {
         Sides::above(self.albedo)
+    }
+
+    fn color(&self) -> Sides {
+        Sides::above(Rgb::WHITE)
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Value {

@@ -19,8 +19,10 @@ pub struct RenderDesc {
     /// The same in shares of the picture, whatever its size: left, top, right and lower edge, 0 to 1. The pixels
     /// are those whose centres are within. `crop` goes before it.
     pub window: Option<[f64; 4]>,
-    /// The background is not seen by the camera: alpha is 0 there, and the environment pass is as ever.
-    pub film_transparent: bool,
+    /// True where the background is not seen by the camera: alpha is 0 there, and the environment pass is as ever.
+    /// False where alpha is 1 there, even of a black one. `None` goes by what is there: alpha is 1 in front of a
+    /// dome and 0 in front of nothing.
+    pub film_transparent: Option<bool>,
     /// Opacity from which on a surface is what normal, UV, depth, position and index passes show; thinner ones
     /// are looked through. 0 for the first surface, whatever it is.
     pub pass_alpha_threshold: f64,
@@ -39,7 +41,7 @@ impl Default for RenderDesc {
             conform: Conform::Expand,
             crop: None,
             window: None,
-            film_transparent: false,
+            film_transparent: None,
             pass_alpha_threshold: 0.5,
             passes: Vec::new(),
             product: None,

@@ -126,35 +126,27 @@ pub fn trace(
             break;
         }
         let frame = scene.shading_frame(&it);
-        if path.scatterings == 0 && scene.effects.catchers && scene.instance(it.instance).catcher {
-            if in_front.is_none() {
-                let bsdf = scene.bsdf(&it, &frame, path.share);
-                let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
-                let samples = settings.light_samples;
-                in_front = Some(catcher::meet(scene, sampler, &shading, path.alpha, samples, &mut sample));
-            }
-            path.ray = it.spawn(path.ray.d);
-            continue;
-        }
+        let bsdf = scene.bsdf(&it, &frame, path.share);
+        let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
         if path.scatterings == 0 {
-            sample.alpha = path.alpha;
-            describe(scene, &it, &frame, &mut sample);
-            if scene.effects.ao {
-                sample.ao = ao::openness(scene, sampler, path.vertex, &it, &frame, settings) * path.alpha;
+            // Of a catcher the camera sees no light, but what it is.
+            if in_front.is_none() {
+                describe_first(scene, sampler, &path, &shading, settings, &mut sample);
             }
+            if scene.effects.catchers && scene.instance(it.instance).catcher {
+                let samples = settings.light_samples;
+                in_front
+                    .get_or_insert_with(|| catcher::meet(scene, sampler, &shading, path.alpha, samples, &mut sample));
+                path.ray = it.spawn(path.ray.d);
+                continue;
+            }
+            sample.alpha = path.alpha;
         }
         if scene.material(&it).unlit {
             break;
         }
         path.beta *= path.occlusion;
 
-        let bsdf = scene.bsdf(&it, &frame, path.share);
-        if path.scatterings == 0 && scene.effects.color {
-            let color = bsdf.albedo() * path.beta;
-            sample.color = to_film(color);
-            sample.denoising_albedo += color.sum();
-        }
-        let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
         let light_samples = if path.scatterings == 0 { settings.light_samples } else { 1 };
         if path.scatterings == 0 && scene.effects.group_shadows {
             shadow_pass::add_of_groups(scene, sampler, &shading, path.beta, light_samples, &mut sample);
@@ -183,6 +175,27 @@ pub fn trace(
         catcher::set_apart(in_front, &mut sample);
     }
     sample
+}
+
+/// What the first surface is, as far as passes ask for it.
+fn describe_first(
+    scene: &Scene,
+    sampler: &Sampler,
+    path: &Path,
+    shading: &Shading<'_>,
+    settings: &Settings,
+    sample: &mut PixelSample,
+) {
+    let Shading { it, frame, bsdf, vertex } = shading;
+    describe(scene, it, frame, sample);
+    if scene.effects.ao {
+        sample.ao = ao::openness(scene, sampler, *vertex, it, frame, settings) * path.alpha;
+    }
+    if scene.effects.color {
+        let color = bsdf.color() * path.beta;
+        sample.color = to_film(color);
+        sample.denoising_albedo += color.sum();
+    }
 }
 
 /// What a path meets on its way to the next surface that scatters.

@@ -72,7 +72,7 @@ impl Effects {
         let in_background = scene.lights.iter().any(|light| light.kind.is_in_background()) || scene.lights.is_empty();
         Self {
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
-            cutouts: any(&|m| !is_opaque(scene, m)),
+            cutouts: any(&|m| lets_pass(m) || !is_opaque(scene, m)),
             holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
             catchers: scene.instances.iter().any(|instance| instance.catcher),
             light_path: any(&asks_path),
@@ -124,6 +124,11 @@ pub(super) fn emits(material: &MaterialDesc) -> bool {
         && material.emission_strength != 0.0
         && material.emission.factor.iter().any(|&c| c != 0.0)
         && known.is_none_or(|[r, g, b, _]| r > 0.0 || g > 0.0 || b > 0.0)
+}
+
+/// True where light may pass on top of all that the material does.
+fn lets_pass(material: &MaterialDesc) -> bool {
+    material.transparency.factor.iter().any(|&c| c > 0.0)
 }
 
 /// True where the material's opacity is 1 everywhere.

@@ -52,7 +52,7 @@ pub struct Scene {
     pub effects: Effects,
     /// All lights.
     pub lights: LightSet,
-    /// True where the camera sees a dome; else what lies behind everything has alpha 0.
+    /// True where the camera sees what lies behind everything; else that has alpha 0.
     pub background_visible: bool,
     /// True where a dome's radiance goes by the camera: another view lights the scene otherwise.
     pub follows_camera: bool,

@@ -102,8 +102,11 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         Vec::new()
     };
     let shows = |light: &Light| light.rules.seen.camera && matches!(light.emitter, AnyEmitter::Dome(_));
-    let film_transparent = desc.render.film_transparent;
-    let background_visible = !film_transparent && lights.iter().any(shows);
+    let film_transparent = desc.render.film_transparent == Some(true);
+    let background_visible = match desc.render.film_transparent {
+        Some(transparent) => !transparent,
+        None => lights.iter().any(shows),
+    };
     let by = match settings.light_selection {
         LightSelection::Tree => Strategy::Tree,
         LightSelection::Power => Strategy::Power,

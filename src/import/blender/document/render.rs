@@ -47,7 +47,7 @@ impl RenderData {
                 let height = self.size[1];
                 [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
             }),
-            film_transparent: self.film_transparent,
+            film_transparent: Some(self.film_transparent),
             pass_alpha_threshold: self.pass_alpha_threshold,
             ..RenderDesc::default()
         }
