@@ -38,6 +38,8 @@ pub enum Closure<C = Rgb, S = f32> {
         color: C,
         /// 0 to 1.
         roughness: S,
+        /// True where light that scatters more than once is not lost.
+        multiscatter: bool,
     },
     /// Diffuse passage.
     Translucent {
@@ -116,7 +118,9 @@ impl<C, S> Closure<C, S> {
     pub fn map<D, T>(&self, mut c: impl FnMut(&C) -> D, mut s: impl FnMut(&S) -> T) -> Closure<D, T> {
         match self {
             Self::Layered(surface) => Closure::Layered(surface.map(c, s)),
-            Self::Diffuse { color, roughness } => Closure::Diffuse { color: c(color), roughness: s(roughness) },
+            Self::Diffuse { color, roughness, multiscatter } => {
+                Closure::Diffuse { color: c(color), roughness: s(roughness), multiscatter: *multiscatter }
+            }
             Self::Translucent { color } => Closure::Translucent { color: c(color) },
             Self::Glossy { color, facets } => Closure::Glossy { color: c(color), facets: facets.map(s) },
             Self::Metal { base, edge, facets, film } => Closure::Metal {
@@ -172,7 +176,9 @@ impl Builder {
     pub fn add(&mut self, weight: Rgb, closure: &Closure) {
         match closure {
             Closure::Layered(surface) => principled::add(self, weight, surface),
-            Closure::Diffuse { color, roughness } => self.add_diffuse(weight, *color, *roughness),
+            Closure::Diffuse { color, roughness, multiscatter } => {
+                self.add_diffuse(weight, *color, *roughness, *multiscatter);
+            }
             Closure::Translucent { color } => self.push(weight * *color, Class::Diffuse, None, Translucent),
             Closure::Glossy { color, facets } => {
                 self.add_reflection(weight, Fresnel::Constant(color.map(|c| c.max(0.0))), facets);
@@ -202,11 +208,11 @@ impl Builder {
         }
     }
 
-    pub(super) fn add_diffuse(&mut self, weight: Rgb, color: Rgb, roughness: f32) {
+    pub(super) fn add_diffuse(&mut self, weight: Rgb, color: Rgb, roughness: f32, multiscatter: bool) {
         if unit(roughness) < 1e-5 {
             self.push(weight * color, Class::Diffuse, None, Lambert);
         } else {
-            let lobe = OrenNayar::new(color, roughness, self.wo(None));
+            let lobe = OrenNayar::new(color, roughness, multiscatter, self.wo(None));
             self.push(weight * color, Class::Diffuse, None, lobe);
         }
     }

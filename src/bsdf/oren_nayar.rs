@@ -21,8 +21,9 @@ pub(super) struct OrenNayar {
 }
 
 impl OrenNayar {
-    /// Of roughness 0 (which is Lambert's) to 1, where the surface is of diffuse `color`.
-    pub fn new(color: Rgb, roughness: f32, wo: Vec3) -> Self {
+    /// Of roughness 0 (which is Lambert's) to 1, where the surface is of diffuse `color`. Without `multiscatter`
+    /// single scattering alone.
+    pub fn new(color: Rgb, roughness: f32, multiscatter: bool, wo: Vec3) -> Self {
         let sigma = roughness.clamp(0.0, 1.0);
         let a = 1.0 / (PI + sigma * (FRAC_PI_2 - 2.0 / 3.0));
         let b = sigma * a;
@@ -30,7 +31,7 @@ impl OrenNayar {
         let average = a * PI + (TAU - 5.6) / 3.0 * b;
         let seen = albedo(a, b, wo.z);
         let lost = (1.0 - average).max(0.0);
-        let missing = average / lost.max(1e-6) * (1.0 - seen).max(0.0);
+        let missing = if multiscatter { average / lost.max(1e-6) * (1.0 - seen).max(0.0) } else { 0.0 };
         // The value is multiplied by the color once more. The paper has one factor of the color here; Cycles has two,
         // which takes up to 3 % from a gray of 0.4 seen from above.
         let color = color.map(|c| c.clamp(0.0, 1.0));

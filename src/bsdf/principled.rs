@@ -53,7 +53,7 @@ pub(super) fn add(builder: &mut Builder, weight: Rgb, surface: &Surface) {
         let color = surface.translucent_color.map(unit);
         builder.push(through * color * translucent, Class::Diffuse, None, Translucent);
     }
-    builder.add_diffuse(through * (1.0 - translucent), base, surface.diffuse_roughness);
+    builder.add_diffuse(through * (1.0 - translucent), base, surface.diffuse_roughness, true);
 }
 
 /// What is left of light below a layer of `albedo`.

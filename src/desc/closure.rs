@@ -36,6 +36,8 @@ pub enum ClosureDesc {
         color: ColorInput,
         /// 0 for Lambert's law.
         roughness: ScalarInput,
+        /// True where light that scatters more than once at a rough surface is not lost.
+        multiscatter: bool,
     },
     /// Diffuse passage.
     Translucent {
@@ -141,7 +143,7 @@ impl ClosureDesc {
         let mut all = Vec::new();
         match self {
             Self::Layered(layers) => all.extend(layers.layers().into_iter().flatten()),
-            Self::Diffuse { color, roughness } => all.extend([of_color(color), of_scalar(roughness)]),
+            Self::Diffuse { color, roughness, .. } => all.extend([of_color(color), of_scalar(roughness)]),
             Self::Translucent { color } => all.push(of_color(color)),
             Self::Glossy { color, facets } => {
                 all.push(of_color(color));

@@ -55,6 +55,10 @@ class Blender:
         """Runs a script; returns what it printed."""
         environment = {**os.environ, "BLENDER_USER_RESOURCES": str(self.folder / "user")}
         environment["PYTHONPATH"] = str(HERE)
+        # Of this version, as the program sets them; the package of 4.2 does not, and one that was imported here did.
+        libraries = next(self.python.parents[1].glob("lib/python3*/site-packages/bpy/lib/materialx/libraries"), None)
+        if libraries is not None:
+            environment["PXR_MTLX_STDLIB_SEARCH_PATHS"] = environment["MATERIALX_SEARCH_PATH"] = str(libraries)
         done = subprocess.run(
             [self.python, *map(str, arguments)], env=environment, capture_output=True, text=True, timeout=timeout
         )

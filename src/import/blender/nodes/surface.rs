@@ -109,7 +109,8 @@ fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum
             return sum.transparent.push(weight);
         }
         "ShaderNodeBsdfDiffuse" => {
-            ClosureDesc::Diffuse { color: input(flow, at, "Color"), roughness: number(flow, at, "Roughness") }
+            let (color, roughness) = (input(flow, at, "Color"), number(flow, at, "Roughness"));
+            ClosureDesc::Diffuse { color, roughness, multiscatter: flow.version >= [4, 3, 0] }
         }
         "ShaderNodeBsdfTranslucent" => ClosureDesc::Translucent { color: input(flow, at, "Color") },
         "ShaderNodeBsdfGlossy" | "ShaderNodeBsdfAnisotropic" => glossy(flow, at),
@@ -139,7 +140,8 @@ fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum
         },
         "ShaderNodeSubsurfaceScattering" => {
             flow.warn("Subsurface Scattering is rendered as a diffuse surface");
-            ClosureDesc::Diffuse { color: input(flow, at, "Color"), roughness: ScalarInput::constant(0.0) }
+            let color = input(flow, at, "Color");
+            ClosureDesc::Diffuse { color, roughness: ScalarInput::constant(0.0), multiscatter: false }
         }
         kind => {
             return flow.warn(format!("the shader \"{}\" ({kind}) is not supported; it is black", at.node.name));

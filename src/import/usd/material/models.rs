@@ -84,7 +84,11 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     transmit(e, node, &mut s);
     let abbe = e.uniform(node, "transmission_dispersion", 0.0);
     s.dispersion = if abbe > 0.0 { 20.0 / abbe } else { 0.0 };
-    left_out(e, node, "transmission_extra_roughness", "extra roughness of transmission");
+    if e.materials.reading.blender {
+        of_principled(e, &mut s);
+    } else {
+        left_out(e, node, "transmission_extra_roughness", "extra roughness of transmission");
+    }
     s.coat = Some(Coat {
         weight: e.scalar(node, "coat", 0.0),
         roughness: e.scalar(node, "coat_roughness", 0.1),
@@ -104,6 +108,18 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     s.opacity = as_number(e, opacity);
     s.normal = e.optional(node, "normal");
     s
+}
+
+/// What Blender 4.2 means by the node: it writes the inputs of its Principled BSDF under the names that are nearest.
+/// Specular levels are factors of F0, 0.5 for 1; the roughness stands thrice, for that of the diffuse base and for
+/// an extra one of what is transmitted too, which that BSDF lacks.
+fn of_principled(e: &mut Evaluator<'_, '_>, s: &mut Surface) {
+    let factor = e.exprs.scale(s.specular, 2.0);
+    s.specular_color = e.exprs.multiply(s.specular_color, factor);
+    s.specular = e.exprs.number(1.0);
+    s.diffuse_roughness = e.exprs.number(0.0);
+    // Principled's aspect is √(1 − 0.9 anisotropy).
+    s.anisotropy = s.anisotropy.map(|(strength, turn)| (e.exprs.scale(strength, 0.9), turn));
 }
 
 fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {

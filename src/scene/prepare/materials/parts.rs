@@ -48,9 +48,10 @@ impl Builder<'_> {
     fn closure(&mut self, inputs: &mut Inputs<'_>, desc: &ClosureDesc) -> Bent {
         match desc {
             ClosureDesc::Layered(layers) => self.layers(inputs, layers),
-            ClosureDesc::Diffuse { color, roughness } => Bent::from(Closure::Diffuse {
+            ClosureDesc::Diffuse { color, roughness, multiscatter } => Bent::from(Closure::Diffuse {
                 color: self.color(inputs, color),
                 roughness: self.scalar(inputs, roughness),
+                multiscatter: *multiscatter,
             }),
             ClosureDesc::Translucent { color } => Bent::from(Closure::Translucent { color: self.color(inputs, color) }),
             ClosureDesc::Glossy { color, facets } => {

@@ -35,6 +35,30 @@ fn standard_surface_folds_its_weights() {
 }
 
 #[test]
+fn standard_surface_of_blender_is_its_principled() {
+    let lines = "float inputs:specular = 0.3
+        color3f inputs:specular_color = (1, 0.5, 0.2)
+        float inputs:specular_roughness = 0.4
+        float inputs:specular_anisotropy = 0.5
+        float inputs:diffuse_roughness = 0.4
+        float inputs:transmission = 0.5
+        float inputs:transmission_extra_roughness = 0.4";
+    let text = material_of("mtlx:", "ND_standard_surface_surfaceshader", lines, "");
+    let folder = tempfile::tempdir().unwrap();
+    let read = |head: &str| read_at(folder.path(), &format!("{head}{text}"), "/m");
+    let blender = read("(\n doc = \"Blender v4.2.23 LTS\"\n)\n");
+    assert_eq!(blender.warnings, "");
+    let m = blender.material();
+    same(&[m.specular.factor, m.roughness.factor, m.diffuse_roughness.factor], &[1.0, 0.4, 0.0]);
+    same(&m.specular_color.factor, &[0.6, 0.3, 0.12]);
+    same(&[m.anisotropy.as_ref().unwrap().strength.factor], &[0.5]);
+    let others = read("");
+    let others = others.material();
+    same(&[others.specular.factor, others.diffuse_roughness.factor], &[0.3, 0.4]);
+    same(&[others.anisotropy.as_ref().unwrap().strength.factor], &[0.5 / 0.9]);
+}
+
+#[test]
 fn transmission_has_an_inside_with_depth_in_metres() {
     let lines = "float inputs:transmission_weight = 1
         color3f inputs:transmission_color = (0.5, 0.6, 0.7)
