@@ -236,6 +236,10 @@ def sky_preetham():
     _sky("PREETHAM", turbidity=3.0, sun_direction=(0.3, 0.5, 0.8))
 
 
+def sky_hosek():
+    _sky("HOSEK_WILKIE", turbidity=3.0, ground_albedo=0.5, sun_direction=(0.3, 0.5, 0.8))
+
+
 def mesh_light():
     room()
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(1.2, -0.8, 2.5))

@@ -31,6 +31,24 @@ fn instances_share_their_meshes() {
 }
 
 #[test]
+fn what_the_stage_says_of_classes_reaches_prims_below_instances() {
+    let loaded = load("implied.usda", &ImportOptions::default());
+    loaded.said_nothing();
+    // OpenUSD's translations; it has the class that is specialized take the mesh away.
+    let expected = [
+        ("/World/Inst/Part/T", [5.0, 0.0, 0.0]),
+        ("/World/Plain/Part/T", [5.0, 0.0, 0.0]),
+        ("/World/One/Part/T", [0.0, 3.0, 0.0]),
+        ("/World/Two/Part/T", [0.0, 3.0, 0.0]),
+    ];
+    for (path, origin) in expected {
+        assert_eq!(loaded.origin(path), origin, "{path}");
+    }
+    assert_eq!(loaded.scene.instances.len(), expected.len(), "{:?}", loaded.paths());
+    assert_eq!(loaded.one("/World/One/Part/T").shape, loaded.one("/World/Two/Part/T").shape);
+}
+
+#[test]
 fn a_prototype_has_its_materials_once() {
     let loaded = load("instances.usda", &ImportOptions::default());
     let of = |path| loaded.one(path).materials[0];

@@ -13,6 +13,15 @@ pub enum Sky {
         /// True for the color space matrix of Blender up to 4.5.
         before_5: bool,
     },
+    /// Another one, with the light of the ground.
+    Hosek {
+        /// Direction to the sun.
+        sun: [f64; 3],
+        /// How hazy the air is, 2 for a clear day.
+        turbidity: f64,
+        /// Share of light that the ground reflects.
+        ground_albedo: f64,
+    },
     /// An atmosphere.
     Atmosphere(Atmosphere),
 }

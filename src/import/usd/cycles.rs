@@ -1,7 +1,7 @@
 //! Inherits and specializes that lead back to where they started. OpenUSD leaves the last of them out; the
 //! openusd crate (0.8) follows them until the stack ends, so they are taken out of its layers, in memory,
 //! before anything below them is composed. As that looks at every prim of a layer, it notes which stages have
-//! value clips.
+//! value clips, and the classes of referenced layers.
 
 use std::collections::{HashMap, HashSet};
 
@@ -32,14 +32,17 @@ pub(super) fn mend(reading: &Reading<'_>) {
     reading.layers.set(seen + new.len());
     if seen == 0 {
         // The layers of the stage itself, which are composed with one another.
-        return break_cycles(reading, &new);
+        return break_cycles(reading, &new, false);
     }
-    new.chunks(1).for_each(|layer| break_cycles(reading, layer));
+    new.chunks(1).for_each(|layer| break_cycles(reading, layer, true));
 }
 
-fn break_cycles(reading: &Reading<'_>, layers: &[String]) {
+fn break_cycles(reading: &Reading<'_>, layers: &[String], is_referenced: bool) {
     let mut arcs = Vec::new();
     layers.iter().for_each(|layer| collect(reading, layer, &mut arcs));
+    if is_referenced {
+        reading.classes.borrow_mut().extend(arcs.iter().map(|arc| arc.to.clone()));
+    }
     let mut told = HashSet::new();
     for arc in cyclic(arcs) {
         let Some(mut layer) = reading.stage.layer_mut(&arc.layer) else { continue };

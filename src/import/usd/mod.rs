@@ -26,6 +26,8 @@ mod flow;
 mod frame;
 mod gather;
 mod images;
+mod implied;
+
 mod inherit;
 mod instancer;
 mod instances;

@@ -1,7 +1,7 @@
 //! A stage that is being read: what every part of the door asks.
 
 use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::mpsc;
@@ -47,6 +47,8 @@ pub(super) struct Reading<'a> {
     pub layers: Cell<usize>,
     /// True where a layer has value clips.
     pub clipped: Cell<bool>,
+    /// Classes that prims of referenced layers name.
+    pub classes: RefCell<HashSet<sdf::Path>>,
     pub declared: RefCell<Declared>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
@@ -101,6 +103,7 @@ impl<'a> Reading<'a> {
             binding_purposes: Vec::new(),
             layers: Cell::new(0),
             clipped: Cell::new(false),
+            classes: RefCell::default(),
             declared: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),

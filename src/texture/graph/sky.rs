@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::desc::graph as desc;
 use crate::math::{Rgb, Vec3};
-use crate::texture::sky::{Atmosphere, AtmosphereSky, Preetham, PreethamSky, Scattering, SunDisk, ToRgb};
+use crate::texture::sky::{
+    Atmosphere, AtmosphereSky, Hosek, HosekSky, Preetham, PreethamSky, Scattering, SunDisk, ToRgb,
+};
 
 /// A sky that directions can be looked up in.
 #[derive(Clone)]
@@ -12,6 +14,7 @@ pub struct Sky(Arc<Made>);
 
 enum Made {
     Preetham(PreethamSky),
+    Hosek(HosekSky),
     Atmosphere(AtmosphereSky),
 }
 
@@ -32,9 +35,17 @@ impl Sky {
         let made = match desc {
             desc::Sky::Preetham { sun, turbidity, before_5 } => Made::Preetham(
                 Preetham {
-                    sun_direction: Vec3::from(sun.map(|x| x as f32)),
+                    sun_direction: vector(*sun),
                     turbidity: *turbidity as f32,
                     to_rgb: if *before_5 { ToRgb::Blender4 } else { ToRgb::Blender5 },
+                }
+                .prepare(),
+            ),
+            desc::Sky::Hosek { sun, turbidity, ground_albedo } => Made::Hosek(
+                Hosek {
+                    sun_direction: vector(*sun),
+                    turbidity: *turbidity as f32,
+                    ground_albedo: *ground_albedo as f32,
                 }
                 .prepare(),
             ),
@@ -52,9 +63,14 @@ impl Sky {
         let direction = Vec3::new(x as f32, y as f32, z as f32).normalize_or(Vec3::Z);
         match &*self.0 {
             Made::Preetham(sky) => sky.radiance(direction),
+            Made::Hosek(sky) => sky.radiance(direction),
             Made::Atmosphere(sky) => sky.radiance(direction),
         }
     }
+}
+
+fn vector(v: [f64; 3]) -> Vec3 {
+    Vec3::from(v.map(|x| x as f32))
 }
 
 /// The disk of an atmosphere's sun, where it has one.

@@ -1,9 +1,8 @@
 //! Skies by direction, as Blender's Sky Texture has them: pure functions behind a table that is made
 //! once. Up is +z; a rotation of 0 puts the sun over +y, and grows clockwise seen from above.
-//!
-//! Hosek and Wilkie's model is not here: its fitted coefficients are a data set of its authors.
 
 mod color;
+mod hosek;
 mod multiple;
 mod preetham;
 mod single;
@@ -14,6 +13,7 @@ mod table;
 use crate::math::{Rgb, Vec3};
 
 pub use color::ToRgb;
+pub use hosek::{Hosek, HosekSky};
 pub use preetham::{Preetham, PreethamSky};
 
 use sun::Sun;

@@ -12,12 +12,12 @@ pub fn sky<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
         "SINGLE_SCATTERING" => Scattering::Single,
         "MULTIPLE_SCATTERING" => Scattering::Multiple,
         kind => {
-            if kind != "PREETHAM" {
-                flow.warn("the Hosek-Wilkie sky is rendered by Preetham's formula, without the light of the ground");
-            }
             let sun = at.node.vector("sun_direction").unwrap_or([0.0, 0.0, 1.0]);
-            let before_5 = flow.version < [5, 0, 0];
-            let sky = Sky::Preetham { sun, turbidity: number("turbidity", 2.2), before_5 };
+            let turbidity = number("turbidity", 2.2);
+            let sky = match kind {
+                "PREETHAM" => Sky::Preetham { sun, turbidity, before_5: flow.version < [5, 0, 0] },
+                _ => Sky::Hosek { sun, turbidity, ground_albedo: number("ground_albedo", 0.3) },
+            };
             let direction = flow.linked_or(at, "Vector", |flow| flow.graph.leaf(Leaf::Generated));
             return flow.graph.push(Op::Sky { sky, direction });
         }
