@@ -227,6 +227,7 @@ impl<'a> Materials<'a> {
                 let mut finished = surface::finish(&mut evaluator, found.surface.node, surface);
                 finished.material.name = path.name().unwrap_or_default().into();
                 finished.material.place = self.reading.place_of(path);
+                self.tell_of_more(path);
                 return Some(finished);
             }
         }
@@ -262,6 +263,23 @@ impl<'a> Materials<'a> {
             }
         }
         found
+    }
+
+    /// Tells of what a material has beside its surface.
+    fn tell_of_more(&self, path: &sdf::Path) {
+        let reading = self.reading;
+        let Some(material) = schema::Material::get(&reading.stage, path.clone()).ok().flatten() else { return };
+        let outputs = [("displacement", material.displacement_outputs()), ("volume", material.volume_outputs())];
+        for (what, outputs) in outputs {
+            let models = outputs.unwrap_or_default().into_iter().filter_map(|output| {
+                let (network, source) = shade::network(reading, output.attribute())?;
+                Some(network.nodes[source.node].category.clone())
+            });
+            // Of UsdPreviewSurface its input tells whether there is any.
+            if models.into_iter().any(|model| model != "UsdPreviewSurface") {
+                reading.warn(path, format!("its {what} is left out: not computed yet"));
+            }
+        }
     }
 
     fn tell_why_not(&self, path: &sdf::Path) {

@@ -82,6 +82,18 @@ impl Builder<'_, '_> {
         Some(index)
     }
 
+    /// The colour space that ColorSpaceAPI gives `prim`, or the nearest of its parents that has one.
+    fn color_space_of(&self, prim: &Prim) -> Option<String> {
+        let mut prim = Some(prim.clone());
+        while let Some(at) = prim {
+            if let Some(name) = self.reading.value::<sdf::Value>(&at, "colorSpace:name").and_then(text_of) {
+                return Some(name);
+            }
+            prim = at.parent();
+        }
+        None
+    }
+
     fn input(&mut self, attribute: &Attribute, depth: usize) -> Input {
         let Some(producer) = self.producer(attribute) else { return Input::default() };
         if producer.name().starts_with("outputs:")
@@ -91,9 +103,14 @@ impl Builder<'_, '_> {
         }
         let color_space = [attribute, &producer]
             .into_iter()
-            .find_map(|a| a.get_metadata::<sdf::Value>("colorSpace").ok().flatten().and_then(text_of));
+            .find_map(|a| a.get_metadata::<sdf::Value>("colorSpace").ok().flatten().and_then(text_of))
+            .or_else(|| is_color(&producer).then(|| self.color_space_of(&producer.prim())).flatten());
         Input { value: value(self.reading, &producer), source: None, color_space }
     }
+}
+
+fn is_color(attribute: &Attribute) -> bool {
+    attribute.type_name().ok().flatten().is_some_and(|name| name.as_str().starts_with("color"))
 }
 
 /// The value of an attribute.

@@ -13,7 +13,7 @@ use super::ribbon::{Joint, Ribbons};
 use super::rounds::Rounds;
 use super::segments::{Basis, Curve, Wrap};
 use super::values::triples;
-use super::{Built, Wants, mesh, motion, points};
+use super::{Built, Wants, mesh, motion, points, subsets};
 use crate::desc::{Motion, Strand};
 use crate::error::{Place, Warnings};
 use crate::math::Vec3;
@@ -53,6 +53,7 @@ pub(super) fn read(
     if let Some(deformer) = &deformer {
         points = deformer.points(points, reading.time);
     }
+    subsets::tell_of_those(reading, prim);
     let mut from_hermite = false;
     match kind {
         "BasisCurves" => {

@@ -84,6 +84,7 @@ pub(super) fn read_tetrahedra(
     prim: &Prim,
     inherited: &[Primvar],
     skin: Option<&Bound>,
+    shutter: Option<[f64; 2]>,
 ) -> Option<Mesh> {
     let mut points = points(reading, prim, skin)?;
     let indices: Vec<i32> = match reading.value::<Value>(prim, "surfaceFaceVertexIndices") {
@@ -98,10 +99,14 @@ pub(super) fn read_tetrahedra(
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
     }
-    if let Some(deformer) = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len())) {
+    let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let motion = shutter.map_or_else(Vec::new, moved);
+    if let Some(deformer) = &deformer {
         primvars.normals = deformer.of_surface(primvars.normals, &indices);
         points = deformer.points(points, reading.time);
     }
+    subsets::tell_of_those(reading, prim);
     Some(Mesh {
         points,
         counts: vec![3; indices.len() / 3],
@@ -111,7 +116,7 @@ pub(super) fn read_tetrahedra(
         rules: None,
         primvars,
         subsets: Subsets::default(),
-        motion: Vec::new(),
+        motion,
     })
 }
 

@@ -121,7 +121,8 @@ pub(super) fn read(
         "Mesh" => {
             mesh::read(reading, prim, primvars, skin, reading.shutter.get()).map(|mesh| Source::Mesh(Box::new(mesh)))
         }
-        "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars, skin).map(|mesh| Source::Mesh(Box::new(mesh))),
+        "TetMesh" => mesh::read_tetrahedra(reading, prim, primvars, skin, reading.shutter.get())
+            .map(|mesh| Source::Mesh(Box::new(mesh))),
         "BasisCurves" | "HermiteCurves" | "NurbsCurves" => {
             curves::read(reading, prim, primvars, skin, kind.as_str()).map(|curves| Source::Curves(Box::new(curves)))
         }

@@ -14,16 +14,25 @@ pub(super) struct Subsets {
     pub faces: Vec<Vec<i32>>,
 }
 
+fn of_materials(reading: &Reading<'_>, prim: &Prim) -> impl Iterator<Item = Prim> {
+    prim.children().unwrap_or_default().into_iter().filter(|child| {
+        child.type_name().ok().flatten().is_some_and(|kind| kind == "GeomSubset")
+            && reading.value::<Token>(child, "familyName").is_some_and(|family| family == "materialBind")
+    })
+}
+
+/// Tells of those of `prim`, which is no mesh of faces.
+pub(super) fn tell_of_those(reading: &Reading<'_>, prim: &Prim) {
+    for child in of_materials(reading, prim) {
+        reading
+            .warn(child.path(), "subsets are supported of Mesh alone; it is left out, and its parent's material shown");
+    }
+}
+
 /// Those of the mesh `prim`.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim) -> Subsets {
     let mut subsets = Subsets::default();
-    for child in prim.children().unwrap_or_default() {
-        if child.type_name().ok().flatten().is_none_or(|kind| kind != "GeomSubset") {
-            continue;
-        }
-        if reading.value::<Token>(&child, "familyName").is_none_or(|family| family != "materialBind") {
-            continue;
-        }
+    for child in of_materials(reading, prim) {
         let element = reading.value::<Token>(&child, "elementType");
         if let Some(element) = element.filter(|element| element != "face") {
             reading.warn(child.path(), format!("subsets of elements \"{element}\" are not supported; it is left out"));

@@ -334,3 +334,37 @@ fn shared_nodes_are_worked_out_once() {
     let read = mtlx("ND_surface", "token inputs:bsdf.connect = </m/m59.outputs:out>", &nodes);
     same(&read.material().base_color.factor, &[0.18; 3]);
 }
+
+#[test]
+fn a_color_space_of_a_shader_or_what_it_stands_in_is_that_of_its_colors() {
+    let lines = "color3f inputs:base_color = (0.5, 0.5, 0.5)\n float inputs:specular_roughness = 0.5";
+    let text = material_of("mtlx:", "ND_standard_surface_surfaceshader", lines, "");
+    let own =
+        text.replace("uniform token info", "uniform token colorSpace:name = \"srgb_rec709_scene\"\nuniform token info");
+    let above = format!(
+        "def Scope \"l\" {{ uniform token colorSpace:name = \"srgb_rec709_scene\"\n{} }}",
+        text.replace("/m/", "/l/m/")
+    );
+    let folder = tempfile::tempdir().unwrap();
+    for (text, path) in [(own, "/m"), (above, "/l/m")] {
+        let read = read_at(folder.path(), &text, path);
+        same(&read.material().base_color.factor, &[0.214_041, 0.214_041, 0.214_041]);
+        same(&[read.material().roughness.factor], &[0.5]);
+    }
+}
+
+#[test]
+fn displacement_and_volumes_beside_a_surface_are_told() {
+    let nodes = "token outputs:mtlx:displacement.connect = </m/d.outputs:out>
+        token outputs:volume.connect = </m/v.outputs:out>
+        def Shader \"d\" { uniform token info:id = \"ND_displacement_float\"
+            float inputs:displacement = 1
+            token outputs:out }
+        def Shader \"v\" { uniform token info:id = \"ND_volume\"
+            token outputs:out }";
+    let read = mtlx("ND_standard_surface_surfaceshader", "", nodes);
+    assert!(read.warnings.contains("its displacement is left out") && read.warnings.contains("its volume is left out"));
+    // UsdPreviewSurface is its own displacement, of which an input tells.
+    let preview = preview("", "token outputs:displacement.connect = </m/s.outputs:displacement>");
+    assert_eq!(preview.warnings, "");
+}

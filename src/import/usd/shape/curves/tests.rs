@@ -194,3 +194,19 @@ fn points_are_balls_with_values_of_their_own() {
     assert_eq!(rounds.uvs, [[[0.0, 1.0], [0.5, 0.75]]]);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
+
+#[test]
+fn subsets_of_curves_are_told() {
+    let lines = "uniform token type = \"linear\"
+        int[] curveVertexCounts = [2]
+        point3f[] points = [(0, 0, 0), (0, 1, 0)]
+        float[] widths = [0.1] ( interpolation = \"constant\" )
+        def GeomSubset \"S\" {
+            uniform token elementType = \"segment\"
+            uniform token familyName = \"materialBind\"
+            int[] indices = [0]
+        }";
+    let (built, warnings) = curves("BasisCurves", lines);
+    assert!(built.is_some());
+    assert!(warnings.iter().any(|said| said.contains("subsets are supported of Mesh alone")), "{warnings:?}");
+}
