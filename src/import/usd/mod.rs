@@ -45,6 +45,7 @@ mod skel;
 mod spline;
 mod stage;
 mod stamp;
+mod told;
 mod udim;
 mod units;
 mod values;
@@ -77,7 +78,7 @@ pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Re
                 Err(error) => return drop(sender.send((Err(error), Warnings::new()))),
             };
             let scene = scene::build(&reading);
-            let told = reading.warnings.take();
+            let told = told::with_layers(&reading, reading.warnings.take());
             // Letting go of a stage takes long, and nobody needs to wait for it.
             let _ = sender.send((scene, told));
         }
