@@ -37,6 +37,7 @@ impl Integrator {
                     | CryptoMaterial
                     | CryptoAsset
                     | FirstHit
+                    | Aov
             ),
         }
     }

@@ -6,6 +6,7 @@
 //! W·sr⁻¹·m⁻² and linear Rec.709. Indices point into the vectors of the same `SceneDesc`;
 //! [`check`] holds them to that.
 
+mod aov;
 mod camera;
 mod check;
 mod closure;
@@ -18,6 +19,7 @@ mod render;
 mod rounds;
 mod texture;
 
+pub use aov::{AovDesc, AovKind, AovOutput};
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use closure::{ClosureDesc, FacetsDesc, PartDesc};

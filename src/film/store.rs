@@ -6,7 +6,6 @@
 
 use std::sync::Arc;
 
-use super::cryptomatte::DEPTH;
 use super::pass::Develop;
 use super::pass_set::{Chosen, PassSet};
 use super::picture::{Layer, Picture};
@@ -94,21 +93,17 @@ impl Film {
 
     fn develop_pass(&self, chosen: &Chosen<'_>) -> Vec<Layer> {
         let pass = chosen.pass;
-        let names = match pass.develop {
-            Develop::Pixel(_) => vec![chosen.layer()],
-            Develop::Cryptomatte(_) => (0..DEPTH / 2).map(|i| format!("{}{i:02}", pass.layer)).collect(),
-        };
-        let n = pass.channels.len();
-        let channels: Vec<String> = pass.channels.chars().map(String::from).collect();
+        let n = chosen.channels().len();
+        let channels: Vec<String> = chosen.channels().chars().map(String::from).collect();
         let size = self.width as usize * self.height as usize * n;
         let empty = |name| Layer { name, channels: channels.clone(), data: vec![0.0; size], storage: pass.storage };
-        let mut layers: Vec<Layer> = names.into_iter().map(empty).collect();
+        let mut layers: Vec<Layer> = chosen.layers().into_iter().map(empty).collect();
         for tile in &self.tiles {
             for (x, y) in tile.pixels() {
                 let at = (y as usize * self.width as usize + x as usize) * n;
                 match pass.develop {
                     Develop::Pixel(value) => {
-                        let value = value(&tile.sums(x, y, chosen.group_index())).map(to_f32);
+                        let value = value(&tile.sums(x, y, chosen)).map(to_f32);
                         layers[0].data[at..at + n].copy_from_slice(&value[..n]);
                     }
                     Develop::Cryptomatte(kind) => {
@@ -151,7 +146,7 @@ mod tests {
 
     fn of_groups(passes: &str, groups: &[&str], samples: &[PixelSample]) -> Picture {
         let groups: Vec<Arc<str>> = groups.iter().map(|&name| name.into()).collect();
-        let passes = PassSet::parse(passes).expect("known passes").resolve(&groups).expect("known groups");
+        let passes = PassSet::parse(passes).expect("known passes").resolve(&groups, &[]).expect("known groups");
         let mut film = Film::new(1, 1, passes);
         for (i, sample) in samples.iter().enumerate() {
             film.tiles_mut()[0].add(id(i as u32), 1.0, sample);
@@ -280,7 +275,7 @@ mod tests {
     fn groups_are_held_to_be_finite_where_they_are_asked_for() {
         let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
         let kept = |passes: &str, bad: GroupSample| {
-            let passes = PassSet::parse(passes).expect("known").resolve(&groups).expect("there");
+            let passes = PassSet::parse(passes).expect("known").resolve(&groups, &[]).expect("there");
             let groups = vec![bad; passes.groups().len()].into();
             let mut film = Film::new(1, 1, passes);
             film.tiles_mut()[0].add(id(0), 1.0, &PixelSample { groups, ..PixelSample::default() })
@@ -348,7 +343,7 @@ mod tests {
         assert!(bytes("all") > pixels * 62 * 8);
         let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
         let stride = |list: &str| {
-            let passes = PassSet::parse(list).expect("known").resolve(&groups).expect("there");
+            let passes = PassSet::parse(list).expect("known").resolve(&groups, &[]).expect("there");
             (Film::bytes_needed(1, 1, &passes) - 4) / 8
         };
         assert_eq!([stride("combined"), stride("combined,combined_key")], [4, 7]);

@@ -1,6 +1,7 @@
 //! The scene as it is traced: `f32`, immutable during a render, in *render space*, whose origin lies
 //! near the camera.
 
+mod aovs;
 mod asked;
 mod effects;
 mod framing;

@@ -1,5 +1,6 @@
 //! From what was authored to what is traced: the only place that sees both sides.
 
+mod aovs;
 mod cache;
 mod camera;
 mod dome;
@@ -58,7 +59,7 @@ pub struct Prepared {
 /// Turns `desc` into what is traced, as `settings` ask.
 ///
 /// # Errors
-/// An index of `desc` that is out of range, an unknown camera or light group, a picture without size.
+/// An index of `desc` that is out of range, an unknown camera, light group or AOV, a picture without size.
 pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
     prepare_with(desc, view, settings, &mut Cache::default())
 }
@@ -75,13 +76,15 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
     let camera = camera::prepare(&camera_desc, &desc.render, whole, origin);
 
-    let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    let passes = settings.passes.resolve(&light_groups(&desc), &aovs::declared(&desc));
+    let passes = passes.map_err(|what| Error::invalid(&desc.place, what))?;
+    aovs::keep(&mut desc, passes.aovs());
     let catchers = desc.instances.iter().any(|instance| instance.catcher);
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
     let Materials { list: materials, textures, names, domes } =
-        materials::prepare(&mut desc, settings, cache, &mut warnings);
+        materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);

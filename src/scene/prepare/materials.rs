@@ -1,5 +1,6 @@
 //! Materials with their constants folded, and the textures and programs that are left.
 
+mod aovs;
 mod parts;
 
 use std::borrow::Cow;
@@ -13,6 +14,7 @@ use super::mend::Mended;
 use crate::desc::graph::{Function, Graph, Leaf, Value, ValueId};
 use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureTransform};
 use crate::error::Warnings;
+use crate::film::Aov;
 use crate::math::Rgb;
 use crate::scene::Material;
 use crate::scene::asked::Names;
@@ -34,15 +36,21 @@ pub struct Materials {
     pub domes: Vec<Program>,
 }
 
-/// The materials of `desc`. Texels move out of `desc` into the textures.
-pub fn prepare(desc: &mut SceneDesc, settings: &Settings, cache: &mut Cache, warnings: &mut Warnings) -> Materials {
+/// The materials of `desc`, which give `aovs`. Texels move out of `desc` into the textures.
+pub fn prepare(
+    desc: &mut SceneDesc,
+    settings: &Settings,
+    aovs: &[Aov],
+    cache: &mut Cache,
+    warnings: &mut Warnings,
+) -> Materials {
     let mut used = vec![false; desc.materials.len()];
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
     let images = prepare_images(desc, &used, cache, warnings);
     let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
-    let mut builder = Builder { desc, settings, textures, names: Names::default() };
+    let mut builder = Builder { desc, settings, aovs, textures, names: Names::default() };
     let fallback = MaterialDesc::default();
     let materials = desc.materials.iter().zip(&used).map(|(material, used)| (material, *used));
     let list = materials
@@ -156,6 +164,7 @@ impl Textures<'_> {
 struct Builder<'a> {
     desc: &'a SceneDesc,
     settings: &'a Settings,
+    aovs: &'a [Aov],
     textures: Textures<'a>,
     names: Names,
 }
@@ -336,7 +345,18 @@ impl Builder<'_> {
             .filter(|o| self.settings.occlusion_maps && o.factor != 0.0)
             .filter(|o| o.texture.is_some() || o.graph.is_some())
             .map(|o| self.scalar(inputs, &o));
-        let programs = Programs { opacity, emission: light, surface, normal, bends, occlusion: self.program(inputs) };
+        let occluded = self.program(inputs);
+        // What it is called:
+        let aovs = aovs::inputs(self, inputs);
+        let programs = Programs {
+            opacity,
+            emission: light,
+            surface,
+            normal,
+            bends,
+            occlusion: occluded,
+            aovs: self.program(inputs),
+        };
         Material {
             parts,
             alpha,
@@ -354,6 +374,7 @@ impl Builder<'_> {
             holdout: desc.holdout,
             normal: normal_map,
             occlusion,
+            aovs,
             programs: programs.any().then(|| Arc::new(programs)),
             inputs: std::mem::take(&mut inputs.textures),
         }
