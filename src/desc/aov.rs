@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::graph::{Graph, ValueId};
 use super::material::{ColorInput, ScalarInput};
 
 /// A pass that a scene declares.
@@ -31,4 +32,14 @@ pub struct AovOutput {
     pub color: ColorInput,
     /// For an AOV of numbers.
     pub value: ScalarInput,
+}
+
+/// What lies behind everything gives as AOVs where the camera sees it. In its graph points are directions, as in
+/// that of a [`DomeShader`](super::DomeShader).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BackgroundAovs {
+    /// How it is made.
+    pub graph: Graph,
+    /// Name of each AOV, and what it is for one of colors and for one of numbers.
+    pub outputs: Vec<(Arc<str>, [ValueId; 2])>,
 }

@@ -116,6 +116,9 @@ pub fn trace(
             }
         });
         let Some(it) = surface else {
+            if !described && path.scatterings == 0 {
+                scene.add_background_aovs(path.ray.d, &mut sample.aovs);
+            }
             add_background(scene, &path, &mut sample);
             break;
         };
@@ -268,6 +271,9 @@ pub fn first_surface(
         Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),
         _ => {}
     });
+    if surface.is_none() && !described {
+        scene.add_background_aovs(path.ray.d, &mut sample.aovs);
+    }
     surface.filter(|it| !scene.is_holdout(it)).map(|it| (it, path.vertex))
 }
 

@@ -27,6 +27,7 @@ pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
 
+use aovs::BackgroundAovs;
 use asked::Asked;
 
 use crate::bvh::Bvh;
@@ -69,6 +70,8 @@ pub struct Scene {
     materials: Vec<Material>,
     textures: Arc<Vec<Texture>>,
     asked: Arc<Asked>,
+    /// `None` where the background gives no AOV that is asked for.
+    background_aovs: Option<BackgroundAovs>,
 }
 
 impl Scene {

@@ -21,8 +21,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::aovs::BackgroundAovs;
 use super::effects::emits;
 use super::framing::world_bounds;
+use super::surroundings::Surroundings;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
@@ -83,9 +85,13 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } =
+    let Materials { list: materials, textures, names, domes, background } =
         materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
+    let background_aovs = background.map(|(program, outputs)| {
+        let surroundings = Surroundings { program, textures: textures.clone(), camera, origin };
+        BackgroundAovs { surroundings, outputs }
+    });
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
     let mut geometry = geometry::prepare(&desc, origin, &materials, &links, cache, &mut warnings);
@@ -136,6 +142,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         materials,
         textures,
         asked,
+        background_aovs,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
 }
@@ -153,6 +160,9 @@ impl Scene {
         let (camera, whole) = camera::choose(&desc, &view, &mut Warnings::new())?;
         self.size = cropped(&desc, whole)?;
         self.camera = camera::prepare(&camera, render, whole, self.origin);
+        if let Some(background) = &mut self.background_aovs {
+            background.surroundings.camera = self.camera;
+        }
         self.exposure = camera::exposure(&camera);
         Ok(())
     }

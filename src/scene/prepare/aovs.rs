@@ -15,7 +15,7 @@ pub fn declared(desc: &SceneDesc) -> Vec<Aov> {
     desc.render.aovs.iter().map(film).collect()
 }
 
-/// Drops what materials give beyond `wanted`: nothing of it is prepared then.
+/// Drops what materials and the background give beyond `wanted`: nothing of it is prepared then.
 pub fn keep(desc: &mut SceneDesc, wanted: &[Aov]) {
     for material in &mut desc.materials {
         material.aovs.retain_mut(|output| {
@@ -26,5 +26,9 @@ pub fn keep(desc: &mut SceneDesc, wanted: &[Aov]) {
             }
             true
         });
+    }
+    desc.background_aovs.outputs.retain(|(name, _)| wanted.iter().any(|aov| aov.name == *name));
+    if desc.render.film_transparent == Some(true) {
+        desc.background_aovs.outputs.clear();
     }
 }

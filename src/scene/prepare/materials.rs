@@ -34,6 +34,8 @@ pub struct Materials {
     pub names: Names,
     /// Programs of the radiance of `SceneDesc::dome_shaders`.
     pub domes: Vec<Program>,
+    /// Program of what the background gives as AOVs, and which AOV each of its values is.
+    pub background: Option<(Program, Vec<usize>)>,
 }
 
 /// The materials of `desc`, which give `aovs`. Texels move out of `desc` into the textures.
@@ -63,7 +65,8 @@ pub fn prepare(
         graphs::program(&fallback, &shader.graph, &[shader.radiance], &mut builder.textures, &mut builder.names)
     });
     let domes = domes.collect();
-    Materials { list, textures: builder.textures.list, names: builder.names, domes }
+    let background = aovs::background(&mut builder);
+    Materials { list, textures: builder.textures.list, names: builder.names, domes, background }
 }
 
 /// Pyramids of the images that materials in use and domes look up, in parallel.
@@ -85,6 +88,10 @@ fn prepare_images(
         for texture in graphs::looked_up(&shader.graph, [shader.radiance]) {
             wanted[desc.textures[texture as usize].image as usize] = true;
         }
+    }
+    let background = &desc.background_aovs;
+    for texture in graphs::looked_up(&background.graph, background.outputs.iter().flat_map(|(_, values)| *values)) {
+        wanted[desc.textures[texture as usize].image as usize] = true;
     }
     // Texels that light are still needed.
     let mut lights = vec![false; desc.images.len()];
