@@ -393,6 +393,7 @@ fn unknown(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::aov::AovKind;
     use super::*;
 
     fn set(list: &str) -> PassSet {
@@ -412,7 +413,8 @@ mod tests {
         assert_eq!(names(&set("")), ["combined"]);
         assert_eq!(names(&set(" AO , combined,ao")), ["combined", "ao"]);
         assert_eq!(names(&set("shadow")), ["shadow"]);
-        let all = set("ao,all").resolve(&groups(&["key"]), &[]).expect("there");
+        let aov = Aov { name: "wet".into(), kind: AovKind::Value };
+        let all = set("ao,all").resolve(&groups(&["key"]), &[aov]).expect("there");
         assert_eq!(names(&all).len(), PASSES.len());
         assert_eq!(PassSet::default(), set("combined"));
     }
@@ -457,7 +459,7 @@ mod tests {
         assert!(list.resolve(&[], &[]).expect_err("none").ends_with(none));
         assert_eq!(set("shadow_*").resolve(&[], &[]).expect_err("nothing left"), none);
         assert_eq!(names(&set("ao,shadow_*").resolve(&[], &[]).expect("ao is left")), ["ao"]);
-        assert!(set("combined_*").resolve(&groups(&["a.b", "a_b"]), &[]).expect_err("one layer").contains("'a_b'"));
+        assert!(set("combined_*").resolve(&groups(&["a.b", "a_b"]), &[]).expect_err("one layer").contains("combined_a_b"));
     }
 
     #[test]
@@ -485,5 +487,30 @@ mod tests {
         assert!(combined.needs_indirect() && combined.needs_light() && !combined.needs_shadow());
         let nothing = set("ao,shadow_*").resolve(&[], &[]).expect("ao");
         assert!(!nothing.needs_light() && !nothing.needs_irradiance());
+    }
+    #[test]
+    fn aovs_are_those_of_the_scene_in_its_order() {
+        let aov = |name: &str, kind| Aov { name: name.into(), kind };
+        let there = [aov("wet", AovKind::Value), aov("albedo.raw", AovKind::Color)];
+        let resolve = |list: &str| set(list).resolve(&[], &there);
+        let all = resolve("ao,aov:*").expect("there");
+        assert_eq!(names(&all), ["ao", "aov:wet", "aov:albedo.raw"]);
+        assert_eq!((all.aov_numbers(), all.needs_aovs(), all.needs_light()), (5, true, false));
+        let shown: Vec<_> = all.iter().skip(1).map(|chosen| (chosen.layer(), chosen.channels())).collect();
+        assert_eq!(shown, [("wet".to_owned(), "X"), ("albedo_raw".to_owned(), "RGBA")]);
+        assert_eq!(resolve("aov:albedo_raw").expect("by its layer").aovs(), &there[1..]);
+        assert_eq!(resolve("all").expect("there").aovs(), there);
+        assert!(!resolve("ao").expect("ao").needs_aovs());
+        assert_eq!(set("aov:wet,aov:*,AOV:dry").to_string(), "aov:*");
+        let unknown = resolve("aov:dry").expect_err("unknown");
+        assert_eq!(unknown, "there is no AOV 'dry'; the scene has: wet, albedo.raw");
+        let nothing = set("aov:*,shadow_*").resolve(&[], &[]).expect_err("nothing left");
+        assert_eq!(nothing, "the scene has no light groups and no AOVs");
+        let taken = [aov("Depth", AovKind::Value)];
+        let message = set("depth,aov:*").resolve(&[], &taken).expect_err("one layer");
+        assert_eq!(message, "the passes 'depth' and 'aov:Depth' would share the layer Depth");
+        let many: Vec<Aov> = (0..256).map(|i| aov(&i.to_string(), AovKind::Value)).collect();
+        assert!(set("all").resolve(&[], &many).expect_err("too many").contains("256"));
+        assert_eq!(set("all").resolve(&[], &many[1..]).expect("as many as there can be").aov_numbers(), 255);
     }
 }

@@ -128,7 +128,7 @@ fn to_f32(value: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{CryptoSample, FirstHit, GroupSample, PixelSample, SampleId, Split, cryptomatte};
+    use crate::film::{Aov, AovKind, CryptoSample, FirstHit, GroupSample, PixelSample, SampleId, Split, cryptomatte};
     use crate::math::{Rgb, Vec3};
 
     fn id(index: u32) -> SampleId {
@@ -388,5 +388,24 @@ mod tests {
         assert_eq!(value(&picture, "CryptoObject01"), [0.0; 4]);
         assert_eq!(value(&picture, "CryptoMaterial00"), [0.0; 4]);
         assert_eq!(value(&picture, "CryptoAsset00"), [cube, 0.75, 0.0, 0.0]);
+    }
+    #[test]
+    fn aovs_lie_behind_the_groups_and_are_held_to_be_finite() {
+        let aovs = [("a", AovKind::Value), ("b", AovKind::Color), ("c", AovKind::Value)];
+        let aovs = aovs.map(|(name, kind)| Aov { name: name.into(), kind });
+        let groups: Vec<Arc<str>> = vec!["key".into()];
+        let passes = PassSet::parse("all").expect("known").resolve(&groups, &aovs).expect("there");
+        let mut film = Film::new(1, 1, passes.clone());
+        let mut sample = PixelSample { combined: Rgb::splat(9.0), ..PixelSample::of(&passes) };
+        sample.groups[0].combined = Rgb::splat(8.0);
+        sample.aovs = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].into();
+        assert!(film.tiles_mut()[0].add(id(0), 0.5, &sample) && film.tiles_mut()[0].add(id(1), 1.5, &sample));
+        sample.aovs[5] = f32::INFINITY;
+        assert!(!film.tiles_mut()[0].add(id(2), 1.0, &sample));
+        let picture = film.develop();
+        assert_eq!(value(&picture, "a"), [1.0]);
+        assert_eq!(value(&picture, "b"), [2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(value(&picture, "c"), [6.0]);
+        assert_eq!((value(&picture, "Combined")[0], value(&picture, "Combined_key")[0]), (9.0, 8.0));
     }
 }

@@ -49,3 +49,65 @@ fn given<'a>(flow: &mut Flow<'a, '_>) -> Vec<(&'a str, [ValueId; 2])> {
     }
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::super::super::BlenderScene;
+    use crate::desc::{AovDesc, AovKind, ColorInput, ScalarInput, SceneDesc};
+    use crate::error::Warnings;
+
+    fn output(name: &str, color: f64, value: f64, mute: bool) -> Value {
+        json!({
+            "name": name, "type": "ShaderNodeOutputAOV", "mute": mute, "properties": {"aov_name": name},
+            "inputs": [
+                {"id": "Color", "name": "Color", "type": "RGBA", "enabled": true, "value": [color, 0.0, 0.0, 1.0]},
+                {"id": "Value", "name": "Value", "type": "VALUE", "enabled": true, "value": value},
+            ],
+        })
+    }
+
+    /// A material and a world of these nodes.
+    fn scene(version: [u32; 3], nodes: &[Value]) -> (SceneDesc, Warnings) {
+        let tree = json!({"nodes": nodes});
+        let document = json!({
+            "version": version, "world": {"name": "World", "nodes": tree},
+            "render": {"aovs": [["wet", "VALUE"], ["raw", "COLOR"]]},
+        });
+        let mut scene = BlenderScene::default();
+        scene.set_document(&document.to_string()).unwrap();
+        scene.set_material(1, &json!({"name": "M", "nodes": tree}).to_string()).unwrap();
+        scene.set_materials(&[1]).unwrap();
+        let mut warnings = Warnings::new();
+        (scene.scene(&mut warnings).unwrap(), warnings)
+    }
+
+    #[test]
+    fn nodes_of_one_name_are_summed_those_in_groups_included() {
+        let inner = json!({"nodes": [output("wet", 1.0, 10.0, false), output("raw", 2.0, 20.0, false)]});
+        let group = |name: &str, mute: bool| {
+            let tree = inner.clone();
+            json!({"name": name, "type": "ShaderNodeGroup", "mute": mute, "tree": tree, "inputs": [], "outputs": []})
+        };
+        let nodes = [output("wet", 0.5, 3.0, false), group("a", false), group("b", false), group("c", true)];
+        let (desc, warnings) = scene([5, 0, 1], &nodes);
+        assert!(warnings.is_empty());
+        let kinds = [("wet", AovKind::Value), ("raw", AovKind::Color)];
+        assert_eq!(desc.render.aovs, kinds.map(|(name, kind)| AovDesc { name: name.into(), kind }));
+        let [wet, raw] = &desc.materials[0].aovs[..] else { panic!("{:?}", desc.materials[0].aovs) };
+        assert_eq!((&*wet.name, wet.value), ("wet", ScalarInput::constant(23.0)));
+        assert_eq!((&*raw.name, raw.color), ("raw", ColorInput::constant([4.0, 0.0, 0.0])));
+        let background = &desc.background_aovs;
+        let [(wet, [_, value]), _] = &background.outputs[..] else { panic!("{background:?}") };
+        assert_eq!((&**wet, background.graph.known(*value)), ("wet", Some([23.0; 4])));
+    }
+
+    #[test]
+    fn muted_ones_give_nothing_before_blender_5() {
+        let nodes = [output("wet", 0.5, 3.0, true), output("", 1.0, 1.0, false)];
+        for (version, count) in [([4, 2, 0], 0), ([4, 5, 3], 0), ([5, 0, 1], 1)] {
+            assert_eq!(scene(version, &nodes).0.materials[0].aovs.len(), count, "{version:?}");
+        }
+    }
+}
