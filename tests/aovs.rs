@@ -62,7 +62,8 @@ const TOP: [f64; 5] = [0.5, -1.0, 4.0, 1.0, 2.0];
 #[test]
 fn aovs_are_layers_of_the_order_in_which_they_are_declared_and_count_by_coverage() {
     let mut builder = declared();
-    let aovs = vec![given("tint", [0.5, -1.0, 4.0], 7.0), given("mark", [9.0; 3], 2.0), given("stranger", [1.0; 3], 1.0)];
+    let aovs =
+        vec![given("tint", [0.5, -1.0, 4.0], 7.0), given("mark", [9.0; 3], 2.0), given("stranger", [1.0; 3], 1.0)];
     square(&mut builder, 0.0, MaterialDesc { aovs, ..MaterialDesc::default() });
     // Two thirds of the picture and the edges of its pixels are beside the square.
     builder.look([0.0; 3], DOWN, 0.5 * 3.0_f64.sqrt());

@@ -459,7 +459,9 @@ mod tests {
         assert!(list.resolve(&[], &[]).expect_err("none").ends_with(none));
         assert_eq!(set("shadow_*").resolve(&[], &[]).expect_err("nothing left"), none);
         assert_eq!(names(&set("ao,shadow_*").resolve(&[], &[]).expect("ao is left")), ["ao"]);
-        assert!(set("combined_*").resolve(&groups(&["a.b", "a_b"]), &[]).expect_err("one layer").contains("combined_a_b"));
+        assert!(
+            set("combined_*").resolve(&groups(&["a.b", "a_b"]), &[]).expect_err("one layer").contains("combined_a_b")
+        );
     }
 
     #[test]
