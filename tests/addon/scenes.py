@@ -574,7 +574,8 @@ def _aov(tree, name, color=(0.0, 0.0, 0.0), value=0.0):
 
 def shader_aovs():
     """AOVs of surfaces by graphs, in a group, twice of one name, muted; of panes, a hole, a sphere of glass, the world."""
-    for name, kind in (("Place", "COLOR"), ("Mark", "VALUE"), ("Muted", "VALUE"), ("Combined", "VALUE")):
+    for name, kind in (("Place", "COLOR"), ("Mark", "VALUE"), ("Muted", "VALUE"), ("Combined", "VALUE"),
+                       ("Shadow", "VALUE")):
         aov = bpy.context.view_layer.aovs.add()
         aov.name, aov.type = name, kind
     floor = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.5, 0.4, 1.0))

@@ -94,9 +94,10 @@ def test_shader_aovs_are_those_of_cycles(blender, tmp_path):
         # Pixel by pixel, too: edges and what is behind a pane are the only noise.
         assert np.mean(np.abs(found - expected) > 0.1 * np.abs(expected).max()) < 0.02, name
     assert np.abs(ours["ViewLayer.Mark.X"]).max() > 20.0
-    # A name that Blender's own passes have.
-    assert "ViewLayer.Combined.X" not in ours
-    assert 'the shader AOV "Combined" is left out: another pass has its name' in output
+    # Names that Blender's and Penumbra's own passes have.
+    for name in ("Combined", "Shadow"):
+        assert f"ViewLayer.{name}.R" in ours and f"ViewLayer.{name}.X" not in ours
+        assert f'the shader AOV "{name}" is left out: another pass has its name' in output
 
 
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
