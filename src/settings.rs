@@ -37,6 +37,7 @@ impl Integrator {
                     | CryptoMaterial
                     | CryptoAsset
                     | FirstHit
+                    | Aov
             ),
         }
     }
@@ -269,7 +270,7 @@ settings! {
     time: Option<f64> = "", Kind::Float { min: 0.0, max: 1e9 }, "SECONDS",
         "Stop after so many seconds of rendering, whatever the samples; alone, the only rule";
     passes: PassSet = "combined", Kind::Text, "LIST",
-        "Passes to write, separated by commas, or all; those of light groups as shadow_NAME, or shadow_* for each";
+        "Passes to write, separated by commas, or all; those of light groups as shadow_NAME, or shadow_* for each, AOVs as aov:NAME";
     integrator: Integrator = "path", Kind::Choice(INTEGRATORS), "NAME",
         "Light transport: path, direct (nothing bounces) or ao (occlusion alone)";
     max_bounces: u32 = "12", Kind::Int { min: 0, max: 1 << 20 }, "N",

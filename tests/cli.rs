@@ -78,7 +78,7 @@ fn renders_every_pass_to_parts_named_as_blender_names_them() {
     assert!(stderr(&output).contains("no light in the scene"), "{}", stderr(&output));
     let picture = exr::read(&out).unwrap();
     assert_eq!((picture.width, picture.height), (32, 24));
-    for pass in penumbra::film::PASSES.iter().filter(|pass| pass.group_prefix().is_none()) {
+    for pass in penumbra::film::PASSES.iter().filter(|pass| pass.prefix().is_none()) {
         let found = picture.layers.iter().any(|layer| layer.name.starts_with(&format!("ViewLayer.{}", pass.layer)));
         assert!(found, "{} is missing", pass.layer);
     }

@@ -227,7 +227,7 @@ fn layers_are_blenders_by_name_and_channel() {
     ];
     assert_eq!(names, expected);
     // Of groups there are none here; a Cryptomatte is three layers.
-    let once = PASSES.iter().filter(|pass| pass.group_prefix().is_none());
+    let once = PASSES.iter().filter(|pass| pass.prefix().is_none());
     assert_eq!(once.count() + 6, expected.len());
 }
 

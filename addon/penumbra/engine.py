@@ -54,7 +54,10 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
         exporter.export(depsgraph, size, self.camera_override)
-        self._tell([*libraries.missing(), *exporter.warnings])
+        clashing = [
+            f'the shader AOV "{name}" is left out: another pass has its name' for name in passes.clashing(view_layer)
+        ]
+        self._tell([*libraries.missing(), *clashing, *exporter.warnings])
         if self.test_break():
             return
 

@@ -210,6 +210,16 @@ class PENUMBRA_PT_passes_light_groups(_Panel, bpy.types.Panel):
         bpy.types.VIEWLAYER_PT_layer_passes_lightgroups.draw(self, context)
 
 
+class PENUMBRA_PT_passes_aov(_Panel, bpy.types.Panel):
+    bl_label = "Shader AOV"
+    bl_context = "view_layer"
+    bl_parent_id = "PENUMBRA_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        bpy.types.VIEWLAYER_PT_layer_passes_aov.draw(self, context)
+
+
 PANELS = (
     PENUMBRA_PT_sampling,
     PENUMBRA_PT_sampling_viewport,
@@ -225,6 +235,7 @@ PANELS = (
     PENUMBRA_PT_passes_data,
     PENUMBRA_PT_passes_light,
     PENUMBRA_PT_passes_cryptomatte,
+    PENUMBRA_PT_passes_aov,
     PENUMBRA_PT_passes_light_groups,
 )
 

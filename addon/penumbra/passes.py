@@ -32,11 +32,16 @@ _TYPES = {"X": "VALUE", "Z": "VALUE", "XYZ": "VECTOR", "XYZW": "VECTOR", "UVA": 
 
 def chosen(view_layer):
     """Names of the engine's passes that the view layer asks for, Combined first."""
+    return _of_engine(view_layer) + (["aov:*"] if aovs(view_layer) else [])
+
+
+def _of_engine(view_layer):
+    """The same without what the view layer declares itself."""
     own = view_layer.penumbra
     names = ["combined"]
     for row in penumbra.passes():
         name = row["name"]
-        if name == "combined":
+        if name == "combined" or name == "aov:<name>":
             continue
         if "<group>" in name:
             if view_layer.lightgroups and (name.startswith("combined") or own.use_pass_shadow):
@@ -51,10 +56,28 @@ def chosen(view_layer):
 
 def layers(view_layer):
     """(name, channels, type) of every layer that a render of the view layer has."""
+    channels = {"VALUE": "X", "COLOR": "RGBA"}
+    own = [(aov.name, channels[aov.type], aov.type) for aov in aovs(view_layer)]
+    return _layers_of_engine(view_layer) + own
+
+
+def aovs(view_layer):
+    """The view layer's shader AOVs that can be told from all other passes."""
+    names = {name for name, _, _ in _layers_of_engine(view_layer)} if view_layer.aovs else set()
+    return [aov for aov in view_layer.aovs if aov.is_valid and aov.name and aov.name not in names]
+
+
+def clashing(view_layer):
+    """Names of those that can't."""
+    usable = {aov.name for aov in aovs(view_layer)}
+    return [aov.name for aov in view_layer.aovs if aov.name not in usable]
+
+
+def _layers_of_engine(view_layer):
     rows = {row["name"]: row for row in penumbra.passes()}
     groups = [group.name for group in view_layer.lightgroups]
     result = []
-    for name in chosen(view_layer):
+    for name in _of_engine(view_layer):
         row = rows[name.replace("*", "<group>")]
         channels = row["channels"]
         kind = _TYPES.get(channels, "COLOR")
@@ -78,5 +101,5 @@ def own_boxes():
     return [
         (row["name"], row["layer"], row["help"])
         for row in penumbra.passes()
-        if row["name"] not in _BOXES and row["name"] != "combined" and "<group>" not in row["name"]
+        if row["name"] not in _BOXES and row["name"] != "combined" and "<" not in row["name"]
     ]

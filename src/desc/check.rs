@@ -41,6 +41,8 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         }
         check_graph(scene, &material.graph, material.graph_values(), &material.place)?;
     }
+    let background = &scene.background_aovs;
+    check_graph(scene, &background.graph, background.outputs.iter().flat_map(|(_, values)| *values), &scene.place)?;
     for image in &scene.images {
         let texels = image.width as usize * image.height as usize;
         if texels == 0 || image.pixels.len() != texels * usize::from(image.channels) {

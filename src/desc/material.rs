@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::graph::{Graph, ValueId};
-use super::{PartDesc, TextureRef};
+use super::{AovOutput, PartDesc, TextureRef};
 use crate::error::Place;
 
 /// A colour: `factor × texture.rgb × graph.rgb`, linear.
@@ -280,6 +280,8 @@ pub struct MaterialDesc {
     pub unlit: bool,
     /// The camera sees a hole in the picture instead, black and of alpha 0; all other rays see the surface.
     pub holdout: bool,
+    /// What it gives as AOVs, each name once; see [`RenderDesc::aovs`](super::RenderDesc::aovs).
+    pub aovs: Vec<AovOutput>,
 }
 
 impl Default for MaterialDesc {
@@ -320,6 +322,7 @@ impl Default for MaterialDesc {
             occlusion: None,
             unlit: false,
             holdout: false,
+            aovs: Vec::new(),
         }
     }
 }
@@ -342,6 +345,7 @@ impl MaterialDesc {
         all.extend(self.occlusion.as_ref().map(of_scalar));
         all.extend(self.normal.map(of_normal));
         all.extend(self.parts.iter().flat_map(PartDesc::inputs));
+        all.extend(self.aovs.iter().flat_map(|aov| [of_color(&aov.color), of_scalar(&aov.value)]));
         all
     }
 

@@ -6,6 +6,7 @@
 //! W·sr⁻¹·m⁻² and linear Rec.709. Indices point into the vectors of the same `SceneDesc`;
 //! [`check`] holds them to that.
 
+mod aov;
 mod camera;
 mod check;
 mod closure;
@@ -18,6 +19,7 @@ mod render;
 mod rounds;
 mod texture;
 
+pub use aov::{AovDesc, AovKind, AovOutput, BackgroundAovs};
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
@@ -62,6 +64,8 @@ pub struct SceneDesc {
     pub lights: Vec<LightDesc>,
     /// What domes emit that is more than an image.
     pub dome_shaders: Vec<DomeShader>,
+    /// What the background gives as AOVs; those of a transparent film are 0.
+    pub background_aovs: BackgroundAovs,
     /// How many more lights the file has that could not be read; the door has told why.
     pub lights_left_out: usize,
     /// Measured distributions that lights use.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::AovDesc;
+
 /// Settings of a render as authored (UsdRender's RenderSettings); what is `None` or empty is not
 /// authored, and what the user sets comes first.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +30,8 @@ pub struct RenderDesc {
     pub pass_alpha_threshold: f64,
     /// Names of passes (`PASSES`), in the order of the file.
     pub passes: Vec<Arc<str>>,
+    /// AOVs that materials may fill, in the order of the file, each name once.
+    pub aovs: Vec<AovDesc>,
     /// Where the file wants its picture.
     pub product: Option<Arc<str>>,
 }
@@ -44,6 +48,7 @@ impl Default for RenderDesc {
             film_transparent: None,
             pass_alpha_threshold: 0.5,
             passes: Vec::new(),
+            aovs: Vec::new(),
             product: None,
         }
     }

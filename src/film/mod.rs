@@ -4,6 +4,7 @@
 //! [`Film`] adds up exactly the quantities the choice needs, in tiles that threads own one at a time,
 //! and [`Film::develop`] turns them into a [`Picture`] at any moment.
 
+mod aov;
 pub mod cryptomatte;
 mod filter;
 mod pass;
@@ -14,8 +15,9 @@ mod sample;
 mod store;
 mod tile;
 
+pub use aov::{Aov, AovKind};
 pub use filter::{FILTERS, Filter, FilterRow};
-pub use pass::{GROUP, PASSES, Pass, Storage};
+pub use pass::{PASSES, Pass, Storage};
 pub use pass_set::{Chosen, PassSet};
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};

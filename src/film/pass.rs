@@ -4,7 +4,8 @@
 //! accumulated color, so that
 //! `Combined = Σ Color × (Direct + Indirect) + Emission + Environment` (Cycles' convention), and
 //! `Diffuse Direct = Shadow × Diffuse Direct Unshadowed`. Rows named `…_<group>` are templates: one
-//! pass for each light group that a [`PassSet`](super::PassSet) was resolved with.
+//! pass for each light group that a [`PassSet`](super::PassSet) was resolved with; the row of `…<name>` is that of
+//! the scene's AOVs.
 
 use super::cryptomatte::CryptoKind;
 use super::quantity::Quantity;
@@ -26,6 +27,8 @@ pub(super) struct Means<'a> {
     pub(super) sums: &'a [f64],
     /// Where each quantity begins in `sums`, for a row of groups those of its group.
     pub(super) offsets: &'a [u32; Quantity::ALL.len()],
+    /// Sums of the AOV, for the row of AOVs.
+    pub(super) aov: &'a [f64],
     /// Samples taken in.
     pub(super) count: u32,
     /// From the extra ray.
@@ -41,6 +44,17 @@ impl Means<'_> {
         if self.count > 0 {
             let start = self.offsets[q as usize] as usize;
             for (mean, sum) in mean.iter_mut().zip(&self.sums[start..start + q.width()]) {
+                *mean = sum / f64::from(self.count);
+            }
+        }
+        mean
+    }
+
+    /// Mean of the AOV.
+    fn aov(&self) -> [f64; 4] {
+        let mut mean = [0.0; 4];
+        if self.count > 0 {
+            for (mean, sum) in mean.iter_mut().zip(self.aov) {
                 *mean = sum / f64::from(self.count);
             }
         }
@@ -95,11 +109,11 @@ pub(super) enum Develop {
 /// A row of [`PASSES`].
 #[derive(Debug)]
 pub struct Pass {
-    /// Name for `--passes`; that of a row of groups ends in [`GROUP`].
+    /// Name for `--passes`; that of a row of groups ends in [`GROUP`], that of the row of AOVs in [`AOV`].
     pub name: &'static str,
-    /// Name of the layer, as Blender 5.0 writes it; that of a row of groups ends in [`GROUP`].
+    /// Name of the layer, as Blender 5.0 writes it, with the same ending.
     pub layer: &'static str,
-    /// One letter per channel.
+    /// One letter per channel; of the row of AOVs those of colors.
     pub channels: &'static str,
     /// What a file may do to it.
     pub storage: Storage,
@@ -111,12 +125,20 @@ pub struct Pass {
 }
 
 /// Stands for a light group's name in the rows that there is one pass per group of.
-pub const GROUP: &str = "<group>";
+pub(super) const GROUP: &str = "<group>";
+
+/// Stands for an AOV's name in the row of them.
+pub(super) const AOV: &str = "<name>";
 
 impl Pass {
-    /// The name up to the light group's; `None` where the pass is not one per group.
-    pub fn group_prefix(&self) -> Option<&'static str> {
-        self.name.strip_suffix(GROUP)
+    /// The name up to that of a light group or AOV; `None` where there is one such pass, whatever the scene.
+    pub fn prefix(&self) -> Option<&'static str> {
+        self.name.strip_suffix(GROUP).or_else(|| self.name.strip_suffix(AOV))
+    }
+
+    /// True for the row of AOVs.
+    pub fn is_of_aovs(&self) -> bool {
+        self.name.ends_with(AOV)
     }
 }
 
@@ -202,6 +224,8 @@ pub static PASSES: &[Pass] = &[
         "Shadow of the lights of a light group alone"),
     pixel("sample_count", "Debug Sample Count", "X", Data, &[], |m| [f64::from(m.count), 0.0, 0.0, 0.0],
         "samples in the pixel"),
+    pixel("aov:<name>", "<name>", "RGBA", Data, &[Q::Aov], |m| m.aov(),
+        "what the AOV Output nodes of that name give; X alone for numbers"),
     crypto("crypto_object", CryptoKind::Object, &[Q::CryptoObject], "Cryptomatte of objects"),
     crypto("crypto_material", CryptoKind::Material, &[Q::CryptoMaterial], "Cryptomatte of materials"),
     crypto("crypto_asset", CryptoKind::Asset, &[Q::CryptoAsset], "Cryptomatte of assets (topmost parents)"),
@@ -225,10 +249,11 @@ mod tests {
     fn names_and_layers_are_unique_and_rows_are_complete() {
         for (i, a) in PASSES.iter().enumerate() {
             assert!(!a.help.is_empty() && (1..=4).contains(&a.channels.len()), "{}", a.name);
-            let stem = a.group_prefix().unwrap_or(a.name);
-            assert!(stem.chars().all(|c| c.is_ascii_lowercase() || c == '_'), "{}", a.name);
-            assert_eq!(a.layer.ends_with(GROUP), a.group_prefix().is_some(), "{}", a.name);
-            assert!(a.needs.iter().all(|q| q.is_of_group() == a.group_prefix().is_some()), "{}", a.name);
+            let stem = a.prefix().unwrap_or(a.name);
+            assert!(stem.chars().all(|c| c.is_ascii_lowercase() || "_:".contains(c)), "{}", a.name);
+            assert_eq!(a.layer.ends_with(GROUP), a.name.ends_with(GROUP), "{}", a.name);
+            assert_eq!(a.layer.ends_with(AOV), a.is_of_aovs(), "{}", a.name);
+            assert!(a.needs.iter().all(|q| q.is_of_group() == a.name.ends_with(GROUP)), "{}", a.name);
             for b in &PASSES[i + 1..] {
                 assert!(a.name != b.name && a.layer != b.layer, "{} and {}", a.name, b.name);
             }

@@ -1,33 +1,40 @@
 //! The passes that one render is asked for, and what they call for.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::fmt::{self, Write};
 use std::sync::Arc;
 
-use super::pass::{GROUP, PASSES, Pass};
+use super::aov::Aov;
+use super::cryptomatte::DEPTH;
+use super::pass::{AOV, Develop, GROUP, PASSES, Pass};
 use super::quantity::{Quantities, Quantity};
+
+/// Most AOVs of a render: materials number what varies in a byte.
+const MOST_AOVS: usize = 255;
 
 /// What of a row is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Choice {
     /// Nothing.
     Nothing,
-    /// The pass, of a row of groups that of every group.
+    /// The pass, of a row of groups or AOVs that of each of them.
     All,
-    /// Of a row of groups those of some groups.
-    Groups(BTreeSet<Arc<str>>),
+    /// Of a row of groups or AOVs those of some names.
+    Named(BTreeSet<Arc<str>>),
 }
 
 /// The passes of one render, and through them what has to be accumulated and computed.
 ///
-/// Which light groups there are is the scene's to say: until [`PassSet::resolve`] has been told, the
-/// set has no passes of groups.
+/// Which light groups and AOVs there are is the scene's to say: until [`PassSet::resolve`] has been told, the
+/// set has no passes of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PassSet {
     /// By row of [`PASSES`].
     choices: Vec<Choice>,
     /// Light groups whose sums are kept; those of `choices` are among them.
     groups: Vec<Arc<str>>,
+    /// AOVs whose sums are kept, those of `choices`.
+    aovs: Vec<Aov>,
     quantities: Quantities,
 }
 
@@ -36,8 +43,15 @@ pub struct PassSet {
 pub struct Chosen<'a> {
     /// Its row.
     pub pass: &'static Pass,
-    /// Index and name of the light group, for a row of groups.
-    group: Option<(usize, &'a str)>,
+    of: Of<'a>,
+}
+
+/// Whose pass it is, with its index.
+#[derive(Clone, Copy, Debug)]
+enum Of<'a> {
+    Picture,
+    Group(usize, &'a str),
+    Aov(usize, &'a Aov),
 }
 
 impl Chosen<'_> {
@@ -46,25 +60,53 @@ impl Chosen<'_> {
         self.fill(self.pass.name, |group| group.to_owned())
     }
 
-    /// Name of the layer; a dot in the name of a light group becomes `_`, as it ends a part of a
-    /// channel's name.
+    /// Name of the layer, without the number that those of Cryptomatte have; a dot in the name of a light group or
+    /// AOV becomes `_`, as it ends a part of a channel's name.
     pub fn layer(&self) -> String {
         self.fill(self.pass.layer, layer_name)
     }
 
+    /// Names of all of its layers.
+    pub(super) fn layers(&self) -> Vec<String> {
+        match self.pass.develop {
+            Develop::Pixel(_) => vec![self.layer()],
+            Develop::Cryptomatte(_) => (0..DEPTH / 2).map(|i| format!("{}{i:02}", self.pass.layer)).collect(),
+        }
+    }
+
+    /// One letter per channel.
+    pub fn channels(&self) -> &'static str {
+        self.aov().map_or(self.pass.channels, |(_, aov)| aov.kind.channels())
+    }
+
     /// Index in [`PassSet::groups`], for a row of groups.
     pub fn group_index(&self) -> Option<usize> {
-        self.group.map(|(index, _)| index)
+        match self.of {
+            Of::Group(index, _) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// The AOV and its index in [`PassSet::aovs`], for the row of AOVs.
+    pub(super) fn aov(&self) -> Option<(usize, &Aov)> {
+        match self.of {
+            Of::Aov(index, aov) => Some((index, aov)),
+            _ => None,
+        }
     }
 
     fn fill(&self, template: &str, name: impl Fn(&str) -> String) -> String {
-        self.group.map_or_else(|| template.to_owned(), |(_, group)| template.replace(GROUP, &name(group)))
+        match self.of {
+            Of::Picture => template.to_owned(),
+            Of::Group(_, group) => template.replace(GROUP, &name(group)),
+            Of::Aov(_, aov) => template.replace(AOV, &name(&aov.name)),
+        }
     }
 }
 
-/// The name of a light group as a part of a layer's.
-fn layer_name(group: &str) -> String {
-    group.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect()
+/// The name of a light group or AOV as a part of a layer's.
+fn layer_name(name: &str) -> String {
+    name.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect()
 }
 
 impl fmt::Display for PassSet {
@@ -72,12 +114,12 @@ impl fmt::Display for PassSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut names = Vec::new();
         for (pass, choice) in PASSES.iter().zip(&self.choices) {
-            match (choice, pass.group_prefix()) {
+            match (choice, pass.prefix()) {
                 (Choice::Nothing, _) => {}
                 (Choice::All, None) => names.push(pass.name.to_owned()),
                 (Choice::All, Some(prefix)) => names.push(format!("{prefix}*")),
-                (Choice::Groups(groups), prefix) => {
-                    names.extend(groups.iter().map(|group| format!("{}{group}", prefix.unwrap_or_default())));
+                (Choice::Named(some), prefix) => {
+                    names.extend(some.iter().map(|name| format!("{}{name}", prefix.unwrap_or_default())));
                 }
             }
         }
@@ -93,13 +135,13 @@ impl Default for PassSet {
 }
 
 impl PassSet {
-    /// Every pass there is, those of every light group included.
+    /// Every pass there is, those of every light group and AOV included.
     pub fn all() -> Self {
-        Self::from_choices(vec![Choice::All; PASSES.len()], Vec::new())
+        Self::from_choices(vec![Choice::All; PASSES.len()], Vec::new(), Vec::new())
     }
 
     /// A comma-separated list of names, or `all`. An empty list is Combined alone. In the rows of
-    /// groups the group's name stands for `<group>`, or `*` for every group.
+    /// groups and AOVs the name of one stands for `<…>`, or `*` for each.
     ///
     /// # Errors
     /// A message that names the unknown pass and those there are.
@@ -109,49 +151,77 @@ impl PassSet {
             if name.eq_ignore_ascii_case("all") {
                 return Ok(Self::all());
             }
-            let (row, group) = find(name).ok_or_else(|| unknown(name))?;
-            match (group, &mut choices[row]) {
+            let (row, one) = find(name).ok_or_else(|| unknown(name))?;
+            match (one, &mut choices[row]) {
                 (None | Some("*"), choice) => *choice = Choice::All,
                 (Some(_), Choice::All) => {}
-                (Some(group), Choice::Groups(groups)) => _ = groups.insert(group.into()),
-                (Some(group), choice) => *choice = Choice::Groups(BTreeSet::from([group.into()])),
+                (Some(one), Choice::Named(some)) => _ = some.insert(one.into()),
+                (Some(one), choice) => *choice = Choice::Named(BTreeSet::from([one.into()])),
             }
         }
         if choices.iter().all(|choice| *choice == Choice::Nothing) {
             choices[0] = Choice::All;
         }
-        Ok(Self::from_choices(choices, Vec::new()))
+        Ok(Self::from_choices(choices, Vec::new(), Vec::new()))
     }
 
-    /// The set for a scene with these light groups: `*` and `all` become the passes of each of them.
+    /// The set for a scene with these light groups and AOVs: `*` and `all` become the passes of each of them.
     ///
     /// # Errors
-    /// A message that names a group that was asked for and is not there, with those that are; two
-    /// groups whose layers would have the same name; a set of which nothing is left.
-    pub fn resolve(&self, groups: &[Arc<str>]) -> Result<Self, String> {
+    /// A message that names a group or AOV that was asked for and is not there, with those that are; two
+    /// passes whose layers would have the same name; more than 255 AOVs; a set of which nothing is left.
+    pub fn resolve(&self, groups: &[Arc<str>], aovs: &[Aov]) -> Result<Self, String> {
         let mut choices = self.choices.clone();
-        let mut kept = BTreeSet::new();
+        let (mut kept, mut kept_aovs) = (BTreeSet::new(), Vec::new());
+        let mut missing = Vec::new();
+        let aov_names: Vec<Arc<str>> = aovs.iter().map(|aov| aov.name.clone()).collect();
         for (pass, choice) in PASSES.iter().zip(&mut choices) {
-            if pass.group_prefix().is_none() || *choice == Choice::Nothing {
+            if pass.prefix().is_none() || *choice == Choice::Nothing {
                 continue;
             }
+            let (what, there) = if pass.is_of_aovs() { ("AOV", &aov_names[..]) } else { ("light group", groups) };
             let chosen = match choice {
-                Choice::Groups(asked) => asked.iter().map(|name| known(name, groups)).collect::<Result<_, _>>()?,
-                _ => groups.iter().cloned().collect::<BTreeSet<_>>(),
+                Choice::Named(asked) => asked.iter().map(|name| known(name, what, there)).collect::<Result<_, _>>()?,
+                _ => there.iter().cloned().collect::<BTreeSet<_>>(),
             };
-            kept.extend(chosen.iter().cloned());
-            *choice = if chosen.is_empty() { Choice::Nothing } else { Choice::Groups(chosen) };
-        }
-        if choices.iter().all(|choice| *choice == Choice::Nothing) {
-            return Err("the scene has no light groups".to_owned());
-        }
-        let kept: Vec<Arc<str>> = kept.into_iter().collect();
-        for (i, a) in kept.iter().enumerate() {
-            if let Some(b) = kept[..i].iter().find(|b| layer_name(b) == layer_name(a)) {
-                return Err(format!("light groups '{b}' and '{a}' would share the layer Combined_{}", layer_name(a)));
+            if pass.is_of_aovs() {
+                kept_aovs.extend(aovs.iter().filter(|aov| chosen.contains(&aov.name)).cloned());
+            } else {
+                kept.extend(chosen.iter().cloned());
+            }
+            if chosen.is_empty() {
+                *choice = Choice::Nothing;
+                if !missing.contains(&what) {
+                    missing.push(what);
+                }
+            } else {
+                *choice = Choice::Named(chosen);
             }
         }
-        Ok(Self::from_choices(choices, kept))
+        if choices.iter().all(|choice| *choice == Choice::Nothing) {
+            return Err(format!("the scene has no {}s", missing.join("s and no ")));
+        }
+        if kept_aovs.len() > MOST_AOVS {
+            return Err(format!("{} AOVs are more than the {MOST_AOVS} that one render can have", kept_aovs.len()));
+        }
+        let set = Self::from_choices(choices, kept.into_iter().collect(), kept_aovs);
+        set.tell_layers_apart()?;
+        Ok(set)
+    }
+
+    /// Two layers of one name could not be told apart.
+    fn tell_layers_apart(&self) -> Result<(), String> {
+        let mut known: HashMap<String, String> = HashMap::new();
+        for chosen in self.iter() {
+            for layer in chosen.layers() {
+                let name = chosen.name();
+                if let Some(other) = known.get(&layer) {
+                    return Err(format!("the passes '{other}' and '{name}' would share the layer {layer}"));
+                }
+                known.insert(layer, name);
+            }
+        }
+        Ok(())
     }
 
     /// The same for a scene with shadow catchers, which change Combined.
@@ -164,28 +234,43 @@ impl PassSet {
         self
     }
 
-    fn from_choices(choices: Vec<Choice>, groups: Vec<Arc<str>>) -> Self {
+    fn from_choices(choices: Vec<Choice>, groups: Vec<Arc<str>>, aovs: Vec<Aov>) -> Self {
         let asked = PASSES.iter().zip(&choices).filter(|(_, choice)| **choice != Choice::Nothing);
         let quantities = asked.flat_map(|(pass, _)| pass.needs).fold(Quantities::default(), |set, &q| set.with(q));
-        Self { choices, groups, quantities }
+        Self { choices, groups, aovs, quantities }
     }
 
-    /// The passes, in the order of [`PASSES`]; of rows of groups those of [`PassSet::groups`].
+    /// The passes, in the order of [`PASSES`]; of rows of groups those of [`PassSet::groups`], of the row of AOVs
+    /// those of [`PassSet::aovs`].
     pub fn iter(&self) -> impl Iterator<Item = Chosen<'_>> {
         PASSES.iter().zip(&self.choices).flat_map(|(pass, choice)| {
-            let once = pass.group_prefix().is_none() && *choice == Choice::All;
-            let of_groups = self.groups.iter().enumerate().filter(move |(_, group)| match choice {
-                Choice::Groups(groups) => groups.contains(*group),
+            let once = (pass.prefix().is_none() && *choice == Choice::All).then_some(Of::Picture);
+            let is_chosen = move |name: &str| match choice {
+                Choice::Named(some) => some.contains(name),
                 _ => false,
-            });
-            let once = once.then_some(Chosen { pass, group: None });
-            once.into_iter().chain(of_groups.map(move |(i, group)| Chosen { pass, group: Some((i, group)) }))
+            };
+            let groups = if pass.is_of_aovs() { &[] } else { &self.groups[..] };
+            let aovs = if pass.is_of_aovs() { &self.aovs[..] } else { &[] };
+            let groups = groups.iter().enumerate().filter(move |(_, group)| is_chosen(group));
+            let groups = groups.map(|(i, group)| Of::Group(i, group));
+            let aovs = aovs.iter().enumerate().map(|(i, aov)| Of::Aov(i, aov));
+            once.into_iter().chain(groups).chain(aovs).map(move |of| Chosen { pass, of })
         })
     }
 
     /// Names of the light groups whose sums are kept, in the order of their indices.
     pub fn groups(&self) -> &[Arc<str>] {
         &self.groups
+    }
+
+    /// AOVs whose sums are kept, in the order of their indices, which is the scene's.
+    pub fn aovs(&self) -> &[Aov] {
+        &self.aovs
+    }
+
+    /// How many numbers all of them are.
+    pub fn aov_numbers(&self) -> usize {
+        self.aovs.iter().map(|aov| aov.kind.width()).sum()
     }
 
     /// What the film accumulates of the light group of that index.
@@ -262,34 +347,39 @@ impl PassSet {
         self.needs_any(&[Quantity::CryptoObject, Quantity::CryptoMaterial, Quantity::CryptoAsset])
     }
 
+    /// What materials give as AOVs has to be computed.
+    pub fn needs_aovs(&self) -> bool {
+        !self.aovs.is_empty()
+    }
+
     /// Normal, albedo or depth for a denoiser are called for.
     pub fn needs_denoising(&self) -> bool {
         self.needs_any(&[Quantity::DenoisingNormal, Quantity::DenoisingAlbedo, Quantity::DenoisingDepth])
     }
 }
 
-/// The row of a name, and the light group for a row of groups.
+/// The row of a name, and the light group or AOV for a row of such.
 fn find(name: &str) -> Option<(usize, Option<&str>)> {
-    let whole = PASSES.iter().position(|pass| pass.group_prefix().is_none() && pass.name.eq_ignore_ascii_case(name));
-    let of_group = || {
+    let whole = PASSES.iter().position(|pass| pass.prefix().is_none() && pass.name.eq_ignore_ascii_case(name));
+    let named = || {
         PASSES.iter().enumerate().find_map(|(row, pass)| {
-            let (prefix, group) = name.split_at_checked(pass.group_prefix()?.len())?;
-            let matches = !group.is_empty() && pass.group_prefix()?.eq_ignore_ascii_case(prefix);
-            matches.then_some((row, Some(group)))
+            let (prefix, one) = name.split_at_checked(pass.prefix()?.len())?;
+            let matches = !one.is_empty() && pass.prefix()?.eq_ignore_ascii_case(prefix);
+            matches.then_some((row, Some(one)))
         })
     };
-    whole.map(|row| (row, None)).or_else(of_group)
+    whole.map(|row| (row, None)).or_else(named)
 }
 
-/// The group of the scene that `name` means: its name, or that of its layers.
-fn known(name: &str, groups: &[Arc<str>]) -> Result<Arc<str>, String> {
-    let exact = groups.iter().find(|group| ***group == *name);
-    let found = exact.or_else(|| groups.iter().find(|group| layer_name(group) == name));
+/// The group or AOV of the scene, `what` says which, that `name` means: its name, or that of its layers.
+fn known(name: &str, what: &str, there: &[Arc<str>]) -> Result<Arc<str>, String> {
+    let exact = there.iter().find(|known| ***known == *name);
+    let found = exact.or_else(|| there.iter().find(|known| layer_name(known) == name));
     found.cloned().ok_or_else(|| {
-        if groups.is_empty() {
-            return format!("there is no light group '{name}': the scene has no light groups");
+        if there.is_empty() {
+            return format!("there is no {what} '{name}': the scene has no {what}s");
         }
-        format!("there is no light group '{name}'; the scene has: {}", groups.join(", "))
+        format!("there is no {what} '{name}'; the scene has: {}", there.join(", "))
     })
 }
 
@@ -303,6 +393,7 @@ fn unknown(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::aov::AovKind;
     use super::*;
 
     fn set(list: &str) -> PassSet {
@@ -322,7 +413,8 @@ mod tests {
         assert_eq!(names(&set("")), ["combined"]);
         assert_eq!(names(&set(" AO , combined,ao")), ["combined", "ao"]);
         assert_eq!(names(&set("shadow")), ["shadow"]);
-        let all = set("ao,all").resolve(&groups(&["key"])).expect("there");
+        let aov = Aov { name: "wet".into(), kind: AovKind::Value };
+        let all = set("ao,all").resolve(&groups(&["key"]), &[aov]).expect("there");
         assert_eq!(names(&all).len(), PASSES.len());
         assert_eq!(PassSet::default(), set("combined"));
     }
@@ -346,7 +438,7 @@ mod tests {
     #[test]
     fn groups_are_those_of_the_scene() {
         let there = groups(&["fill", "key", "rim.001"]);
-        let resolve = |list: &str| set(list).resolve(&there).expect("there");
+        let resolve = |list: &str| set(list).resolve(&there, &[]).expect("there");
         let picked = resolve("shadow_key,combined_fill");
         assert_eq!(names(&picked), ["combined_fill", "shadow_key"]);
         assert_eq!(picked.groups(), &groups(&["fill", "key"])[..]);
@@ -361,13 +453,15 @@ mod tests {
     #[test]
     fn a_group_that_is_not_there_is_told_with_those_that_are() {
         let list = set("combined,shadow_kye");
-        let message = list.resolve(&groups(&["key", "fill"])).expect_err("unknown");
+        let message = list.resolve(&groups(&["key", "fill"]), &[]).expect_err("unknown");
         assert_eq!(message, "there is no light group 'kye'; the scene has: key, fill");
         let none = "the scene has no light groups";
-        assert!(list.resolve(&[]).expect_err("none").ends_with(none));
-        assert_eq!(set("shadow_*").resolve(&[]).expect_err("nothing left"), none);
-        assert_eq!(names(&set("ao,shadow_*").resolve(&[]).expect("ao is left")), ["ao"]);
-        assert!(set("combined_*").resolve(&groups(&["a.b", "a_b"])).expect_err("one layer").contains("'a_b'"));
+        assert!(list.resolve(&[], &[]).expect_err("none").ends_with(none));
+        assert_eq!(set("shadow_*").resolve(&[], &[]).expect_err("nothing left"), none);
+        assert_eq!(names(&set("ao,shadow_*").resolve(&[], &[]).expect("ao is left")), ["ao"]);
+        assert!(
+            set("combined_*").resolve(&groups(&["a.b", "a_b"]), &[]).expect_err("one layer").contains("combined_a_b")
+        );
     }
 
     #[test]
@@ -386,14 +480,39 @@ mod tests {
     #[test]
     fn passes_of_groups_call_for_what_their_sums_need() {
         let there = groups(&["fill", "key"]);
-        let shadow = set("shadow_key").resolve(&there).expect("there");
+        let shadow = set("shadow_key").resolve(&there, &[]).expect("there");
         assert!(!shadow.needs_shadow() && !shadow.needs_irradiance() && !shadow.needs_light());
         assert_eq!(shadow.needs_shadow_of_groups(), [true]);
-        let one = set("combined_*,shadow_key").resolve(&there).expect("there");
+        let one = set("combined_*,shadow_key").resolve(&there, &[]).expect("there");
         assert_eq!(one.needs_shadow_of_groups(), [false, true]);
-        let combined = set("combined_key").resolve(&there).expect("there");
+        let combined = set("combined_key").resolve(&there, &[]).expect("there");
         assert!(combined.needs_indirect() && combined.needs_light() && !combined.needs_shadow());
-        let nothing = set("ao,shadow_*").resolve(&[]).expect("ao");
+        let nothing = set("ao,shadow_*").resolve(&[], &[]).expect("ao");
         assert!(!nothing.needs_light() && !nothing.needs_irradiance());
+    }
+    #[test]
+    fn aovs_are_those_of_the_scene_in_its_order() {
+        let aov = |name: &str, kind| Aov { name: name.into(), kind };
+        let there = [aov("wet", AovKind::Value), aov("albedo.raw", AovKind::Color)];
+        let resolve = |list: &str| set(list).resolve(&[], &there);
+        let all = resolve("ao,aov:*").expect("there");
+        assert_eq!(names(&all), ["ao", "aov:wet", "aov:albedo.raw"]);
+        assert_eq!((all.aov_numbers(), all.needs_aovs(), all.needs_light()), (5, true, false));
+        let shown: Vec<_> = all.iter().skip(1).map(|chosen| (chosen.layer(), chosen.channels())).collect();
+        assert_eq!(shown, [("wet".to_owned(), "X"), ("albedo_raw".to_owned(), "RGBA")]);
+        assert_eq!(resolve("aov:albedo_raw").expect("by its layer").aovs(), &there[1..]);
+        assert_eq!(resolve("all").expect("there").aovs(), there);
+        assert!(!resolve("ao").expect("ao").needs_aovs());
+        assert_eq!(set("aov:wet,aov:*,AOV:dry").to_string(), "aov:*");
+        let unknown = resolve("aov:dry").expect_err("unknown");
+        assert_eq!(unknown, "there is no AOV 'dry'; the scene has: wet, albedo.raw");
+        let nothing = set("aov:*,shadow_*").resolve(&[], &[]).expect_err("nothing left");
+        assert_eq!(nothing, "the scene has no light groups and no AOVs");
+        let taken = [aov("Depth", AovKind::Value)];
+        let message = set("depth,aov:*").resolve(&[], &taken).expect_err("one layer");
+        assert_eq!(message, "the passes 'depth' and 'aov:Depth' would share the layer Depth");
+        let many: Vec<Aov> = (0..256).map(|i| aov(&i.to_string(), AovKind::Value)).collect();
+        assert!(set("all").resolve(&[], &many).expect_err("too many").contains("256"));
+        assert_eq!(set("all").resolve(&[], &many[1..]).expect("as many as there can be").aov_numbers(), 255);
     }
 }

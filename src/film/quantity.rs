@@ -49,11 +49,13 @@ pub enum Quantity {
     CryptoAsset,
     /// The [`FirstHit`](super::FirstHit), overwritten, never added.
     FirstHit,
+    /// What the scene's AOVs are, each with numbers of its own.
+    Aov,
 }
 
 impl Quantity {
     /// All of them, in the order of the film's memory.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 35] = [
         Self::Combined,
         Self::DiffuseDirect,
         Self::DiffuseIndirect,
@@ -88,6 +90,7 @@ impl Quantity {
         Self::CryptoMaterial,
         Self::CryptoAsset,
         Self::FirstHit,
+        Self::Aov,
     ];
 
     /// True where the film keeps it for each light group, not once.
@@ -107,7 +110,7 @@ impl Quantity {
         match self {
             Self::Combined | Self::Behind => 4,
             Self::DenoisingDepth | Self::CatcherShare => 1,
-            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit => 0,
+            Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit | Self::Aov => 0,
             _ => 3,
         }
     }
@@ -208,7 +211,7 @@ mod tests {
         for (i, q) in Quantity::ALL.into_iter().enumerate() {
             assert_eq!(q as usize, i);
         }
-        assert_eq!(Quantity::ALL.len(), Quantity::FirstHit as usize + 1);
+        assert_eq!(Quantity::ALL.len(), Quantity::Aov as usize + 1);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What one camera path brings back to the film, and what one extra ray through the pixel's centre does.
 
+use super::pass_set::PassSet;
 use crate::math::{Rgb, Vec3};
 
 /// A quantity split by the lobe that the path took at its first surface, as Cycles' light passes are.
@@ -109,6 +110,9 @@ pub struct PixelSample {
     /// Light by group, in the order of [`PassSet::groups`](super::PassSet::groups); empty, without
     /// allocation, where no pass asks for groups.
     pub groups: Box<[GroupSample]>,
+    /// Numbers of the AOVs, one after the other in the order of [`PassSet::aovs`](super::PassSet::aovs); empty,
+    /// without allocation, where no pass asks for one.
+    pub aovs: Box<[f32]>,
 }
 
 impl PixelSample {
@@ -141,9 +145,10 @@ impl PixelSample {
         }
     }
 
-    /// A sample that brings nothing, of `groups` light groups.
-    pub fn with_groups(groups: usize) -> Self {
-        Self { groups: vec![GroupSample::default(); groups].into(), ..Self::default() }
+    /// A sample that brings nothing, with room for the light groups and AOVs of `passes`.
+    pub fn of(passes: &PassSet) -> Self {
+        let groups = vec![GroupSample::default(); passes.groups().len()].into();
+        Self { groups, aovs: vec![0.0; passes.aov_numbers()].into(), ..Self::default() }
     }
 }
 
@@ -193,15 +198,17 @@ mod tests {
             irradiance_unshadowed: white,
             denoising_albedo: white,
             denoising_depth: 1.0,
-            ..PixelSample::with_groups(1)
+            aovs: [1.0].into(),
+            ..PixelSample::default()
         };
-        sample.groups[0] = GroupSample {
+        let group = GroupSample {
             combined: white,
             lit: white,
             unshadowed: white,
             irradiance_shadowed: white,
             irradiance_unshadowed: white,
         };
+        sample.groups = [group].into();
         let before = sample.clone();
         sample.expose(4.0);
         let four = Rgb::splat(4.0);
@@ -211,5 +218,6 @@ mod tests {
         assert_eq!((sample.groups[0].lit, sample.indirect.transmission), (four, four));
         assert_eq!((sample.color, sample.ao, sample.alpha), (before.color, before.ao, 1.0));
         assert_eq!((sample.denoising_albedo, sample.denoising_depth), (white, 1.0));
+        assert_eq!(*sample.aovs, [1.0]);
     }
 }

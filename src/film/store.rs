@@ -6,7 +6,6 @@
 
 use std::sync::Arc;
 
-use super::cryptomatte::DEPTH;
 use super::pass::Develop;
 use super::pass_set::{Chosen, PassSet};
 use super::picture::{Layer, Picture};
@@ -94,21 +93,17 @@ impl Film {
 
     fn develop_pass(&self, chosen: &Chosen<'_>) -> Vec<Layer> {
         let pass = chosen.pass;
-        let names = match pass.develop {
-            Develop::Pixel(_) => vec![chosen.layer()],
-            Develop::Cryptomatte(_) => (0..DEPTH / 2).map(|i| format!("{}{i:02}", pass.layer)).collect(),
-        };
-        let n = pass.channels.len();
-        let channels: Vec<String> = pass.channels.chars().map(String::from).collect();
+        let n = chosen.channels().len();
+        let channels: Vec<String> = chosen.channels().chars().map(String::from).collect();
         let size = self.width as usize * self.height as usize * n;
         let empty = |name| Layer { name, channels: channels.clone(), data: vec![0.0; size], storage: pass.storage };
-        let mut layers: Vec<Layer> = names.into_iter().map(empty).collect();
+        let mut layers: Vec<Layer> = chosen.layers().into_iter().map(empty).collect();
         for tile in &self.tiles {
             for (x, y) in tile.pixels() {
                 let at = (y as usize * self.width as usize + x as usize) * n;
                 match pass.develop {
                     Develop::Pixel(value) => {
-                        let value = value(&tile.sums(x, y, chosen.group_index())).map(to_f32);
+                        let value = value(&tile.sums(x, y, chosen)).map(to_f32);
                         layers[0].data[at..at + n].copy_from_slice(&value[..n]);
                     }
                     Develop::Cryptomatte(kind) => {
@@ -133,7 +128,7 @@ fn to_f32(value: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{CryptoSample, FirstHit, GroupSample, PixelSample, SampleId, Split, cryptomatte};
+    use crate::film::{Aov, AovKind, CryptoSample, FirstHit, GroupSample, PixelSample, SampleId, Split, cryptomatte};
     use crate::math::{Rgb, Vec3};
 
     fn id(index: u32) -> SampleId {
@@ -151,7 +146,7 @@ mod tests {
 
     fn of_groups(passes: &str, groups: &[&str], samples: &[PixelSample]) -> Picture {
         let groups: Vec<Arc<str>> = groups.iter().map(|&name| name.into()).collect();
-        let passes = PassSet::parse(passes).expect("known passes").resolve(&groups).expect("known groups");
+        let passes = PassSet::parse(passes).expect("known passes").resolve(&groups, &[]).expect("known groups");
         let mut film = Film::new(1, 1, passes);
         for (i, sample) in samples.iter().enumerate() {
             film.tiles_mut()[0].add(id(i as u32), 1.0, sample);
@@ -280,7 +275,7 @@ mod tests {
     fn groups_are_held_to_be_finite_where_they_are_asked_for() {
         let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
         let kept = |passes: &str, bad: GroupSample| {
-            let passes = PassSet::parse(passes).expect("known").resolve(&groups).expect("there");
+            let passes = PassSet::parse(passes).expect("known").resolve(&groups, &[]).expect("there");
             let groups = vec![bad; passes.groups().len()].into();
             let mut film = Film::new(1, 1, passes);
             film.tiles_mut()[0].add(id(0), 1.0, &PixelSample { groups, ..PixelSample::default() })
@@ -348,7 +343,7 @@ mod tests {
         assert!(bytes("all") > pixels * 62 * 8);
         let groups: Vec<Arc<str>> = vec!["fill".into(), "key".into()];
         let stride = |list: &str| {
-            let passes = PassSet::parse(list).expect("known").resolve(&groups).expect("there");
+            let passes = PassSet::parse(list).expect("known").resolve(&groups, &[]).expect("there");
             (Film::bytes_needed(1, 1, &passes) - 4) / 8
         };
         assert_eq!([stride("combined"), stride("combined,combined_key")], [4, 7]);
@@ -393,5 +388,24 @@ mod tests {
         assert_eq!(value(&picture, "CryptoObject01"), [0.0; 4]);
         assert_eq!(value(&picture, "CryptoMaterial00"), [0.0; 4]);
         assert_eq!(value(&picture, "CryptoAsset00"), [cube, 0.75, 0.0, 0.0]);
+    }
+    #[test]
+    fn aovs_lie_behind_the_groups_and_are_held_to_be_finite() {
+        let aovs = [("a", AovKind::Value), ("b", AovKind::Color), ("c", AovKind::Value)];
+        let aovs = aovs.map(|(name, kind)| Aov { name: name.into(), kind });
+        let groups: Vec<Arc<str>> = vec!["key".into()];
+        let passes = PassSet::parse("all").expect("known").resolve(&groups, &aovs).expect("there");
+        let mut film = Film::new(1, 1, passes.clone());
+        let mut sample = PixelSample { combined: Rgb::splat(9.0), ..PixelSample::of(&passes) };
+        sample.groups[0].combined = Rgb::splat(8.0);
+        sample.aovs = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].into();
+        assert!(film.tiles_mut()[0].add(id(0), 0.5, &sample) && film.tiles_mut()[0].add(id(1), 1.5, &sample));
+        sample.aovs[5] = f32::INFINITY;
+        assert!(!film.tiles_mut()[0].add(id(2), 1.0, &sample));
+        let picture = film.develop();
+        assert_eq!(value(&picture, "a"), [1.0]);
+        assert_eq!(value(&picture, "b"), [2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(value(&picture, "c"), [6.0]);
+        assert_eq!((value(&picture, "Combined")[0], value(&picture, "Combined_key")[0]), (9.0, 8.0));
     }
 }

@@ -3,9 +3,10 @@
 use std::array;
 use std::sync::Arc;
 
+use super::aov::Aov;
 use super::cryptomatte::{CryptoKind, Matte};
 use super::pass::Means;
-use super::pass_set::PassSet;
+use super::pass_set::{Chosen, PassSet};
 use super::quantity::{Quantities, Quantity};
 use super::sample::{FirstHit, PixelSample};
 use crate::math::Rgb;
@@ -62,11 +63,13 @@ pub(super) struct Layout {
     all: Slots,
     /// What is kept of each light group, by its index.
     groups: Vec<Slots>,
+    /// First number of the AOVs, and where each ends.
+    aovs: (usize, Vec<usize>),
     /// Numbers per pixel.
     pub(super) stride: usize,
 }
 
-/// Most numbers per pixel but for those of groups.
+/// Most numbers per pixel but for those of groups and AOVs.
 const MAX_STRIDE: usize = {
     let (mut stride, mut i) = (0, 0);
     while i < Quantity::ALL.len() {
@@ -101,7 +104,13 @@ impl Layout {
         let all = Slots::after(&mut stride, passes.quantities().of_groups(false));
         let groups =
             (0..passes.groups().len()).map(|i| Slots::after(&mut stride, passes.group_quantities(i))).collect();
-        Self { all, groups, stride }
+        let first = stride;
+        let end = |aov: &Aov| {
+            stride += aov.kind.width();
+            stride
+        };
+        let aovs = (first, passes.aovs().iter().map(end).collect());
+        Self { all, groups, aovs, stride }
     }
 }
 
@@ -175,6 +184,7 @@ impl Tile {
         let of_groups = || groups().flat_map(|(slots, group)| slots.iter().map(|(q, at)| (at, q.read_group(group))));
         let coverage = if crypto { weight * sample.crypto.coverage } else { weight };
         let finite = values.iter().all(|value| value.is_finite()) && of_groups().all(|(_, rgb)| rgb.is_finite());
+        let finite = finite && sample.aovs.iter().all(|value| value.is_finite());
         if !coverage.is_finite() || !finite {
             self.non_finite.note(id);
             return false;
@@ -190,6 +200,7 @@ impl Tile {
         for (start, Rgb { r, g, b }) in of_groups() {
             add(&mut sums[start..], &[r, g, b]);
         }
+        add(&mut sums[self.layout.aovs.0..], &sample.aovs);
         if crypto {
             let ids = [sample.crypto.object, sample.crypto.material, sample.crypto.asset];
             for (mattes, id) in self.mattes.iter_mut().zip(ids) {
@@ -220,12 +231,18 @@ impl Tile {
         self.non_finite
     }
 
-    /// The sums of a pixel; `group` for the passes of the light group of that index.
-    pub(super) fn sums(&self, x: u32, y: u32, group: Option<usize>) -> Means<'_> {
+    /// The sums of a pixel, as `chosen` sees them.
+    pub(super) fn sums(&self, x: u32, y: u32, chosen: &Chosen<'_>) -> Means<'_> {
         let pixel = self.index(x, y);
+        let sums = &self.sums[pixel * self.layout.stride..][..self.layout.stride];
+        let of_aov = |(i, aov): (usize, &Aov)| {
+            let end = self.layout.aovs.1[i];
+            &sums[end - aov.kind.width()..end]
+        };
         Means {
-            sums: &self.sums[pixel * self.layout.stride..][..self.layout.stride],
-            offsets: &group.map_or(&self.layout.all, |group| &self.layout.groups[group]).offsets,
+            sums,
+            offsets: &chosen.group_index().map_or(&self.layout.all, |group| &self.layout.groups[group]).offsets,
+            aov: chosen.aov().map_or(&[], of_aov),
             count: self.counts[pixel],
             first_hit: self.first_hits.get(pixel).copied().unwrap_or_default(),
             has_catchers: self.layout.all.quantities.contains(Quantity::CatcherShare),

@@ -36,11 +36,18 @@ fn first_opaque(scene: &Scene, mut ray: Ray) -> Option<Interaction> {
     last
 }
 
-/// Normal and texture coordinates of what a ray from the camera has met with an opacity of `opacity`, whether
-/// it then passes it or not; false where it is too thin to be shown.
+/// Normal, texture coordinates and AOVs of what a ray from the camera has met with an opacity of `opacity`, whether
+/// it then passes it or not; false where it is too thin to be shown. As in Cycles, what is thin or a hole in the
+/// picture has given its AOVs all the same, and what lies behind a thin surface adds its own.
 pub fn describe_shape(scene: &Scene, it: &Interaction, opacity: f32, sample: &mut PixelSample) -> bool {
+    if scene.effects.aovs {
+        scene.add_aovs(it, &mut sample.aovs);
+    }
     if opacity < scene.pass_alpha_threshold || scene.is_holdout(it) {
         return false;
+    }
+    if !scene.effects.geometry {
+        return true;
     }
     sample.normal = scene.shading_frame(it).n;
     let shape = scene.shape(scene.instance(it.instance));

@@ -100,9 +100,9 @@ pub fn trace(
     max_bounces: u32,
 ) -> PixelSample {
     let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
-    let mut sample = PixelSample::with_groups(scene.passes.groups().len());
+    let mut sample = PixelSample::of(&scene.passes);
     let mut path = Path::from_camera(ray, cone);
-    let mut described = !scene.effects.geometry;
+    let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let mut in_front = None;
     loop {
         let surface = next_surface(scene, sampler, &mut path, |path, met| match met {
@@ -116,6 +116,9 @@ pub fn trace(
             }
         });
         let Some(it) = surface else {
+            if !described && path.scatterings == 0 {
+                scene.add_background_aovs(path.ray.d, &mut sample.aovs);
+            }
             add_background(scene, &path, &mut sample);
             break;
         };
@@ -263,11 +266,14 @@ pub fn first_surface(
     sample: &mut PixelSample,
 ) -> Option<(Interaction, u32)> {
     let mut path = Path::from_camera(ray, cone);
-    let mut described = !scene.effects.geometry;
+    let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
         Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),
         _ => {}
     });
+    if surface.is_none() && !described {
+        scene.add_background_aovs(path.ray.d, &mut sample.aovs);
+    }
     surface.filter(|it| !scene.is_holdout(it)).map(|it| (it, path.vertex))
 }
 

@@ -7,7 +7,7 @@ use crate::film::PASSES;
 use crate::settings::{Kind, SETTINGS};
 
 /// Every pass, in the order of a file: dicts of name, layer, channels and help. Names that end in
-/// "<group>" stand for one pass per light group.
+/// "<group>" stand for one pass per light group, "aov:<name>" for the scene's AOVs.
 #[pyfunction]
 pub fn passes(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let row = |pass: &crate::film::Pass| {

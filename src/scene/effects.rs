@@ -47,6 +47,8 @@ pub struct Effects {
     pub color: bool,
     /// Data of the first surface that average over samples: normal, uv, denoising.
     pub geometry: bool,
+    /// What surfaces give as AOVs.
+    pub aovs: bool,
     /// Passes that take one ray through the pixel's centre.
     pub first_hit: bool,
     /// Cryptomatte.
@@ -108,6 +110,7 @@ impl Effects {
             own_shadows: true,
             color: passes.needs_color() || passes.needs_denoising(),
             geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs_denoising(),
+            aovs: passes.needs_aovs(),
             first_hit: passes.needs_first_hit(),
             cryptomatte: passes.needs_cryptomatte(),
         }

@@ -56,14 +56,27 @@ pub struct Programs {
     pub bends: Option<Program>,
     /// Baked occlusion.
     pub occlusion: Option<Program>,
+    /// AOVs.
+    pub aovs: Option<Program>,
 }
 
 impl Programs {
     /// True where there is one at all.
     pub fn any(&self) -> bool {
-        let Self { opacity, emission, surface, normal, bends, occlusion } = self;
-        [opacity, emission, surface, normal, bends, occlusion].iter().any(|program| program.is_some())
+        let Self { opacity, emission, surface, normal, bends, occlusion, aovs } = self;
+        [opacity, emission, surface, normal, bends, occlusion, aovs].iter().any(|program| program.is_some())
     }
+}
+
+/// What a surface gives as an AOV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AovInput {
+    /// Nothing: 0.
+    No,
+    /// A color.
+    Color(ColorInput),
+    /// A number.
+    Value(ScalarInput),
 }
 
 /// A tangent-space normal map.
@@ -137,6 +150,8 @@ pub struct Material {
     pub normal: Option<NormalInput>,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
+    /// What it gives as the AOVs of the render's passes, in their order; empty where it gives nothing.
+    pub aovs: Box<[AovInput]>,
     /// Where some input is a value of a graph.
     pub programs: Option<Arc<Programs>>,
 }

@@ -1,6 +1,7 @@
 //! The scene as it is traced: `f32`, immutable during a render, in *render space*, whose origin lies
 //! near the camera.
 
+mod aovs;
 mod asked;
 mod effects;
 mod framing;
@@ -26,6 +27,7 @@ pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
 
+use aovs::BackgroundAovs;
 use asked::Asked;
 
 use crate::bvh::Bvh;
@@ -68,6 +70,8 @@ pub struct Scene {
     materials: Vec<Material>,
     textures: Arc<Vec<Texture>>,
     asked: Arc<Asked>,
+    /// `None` where the background gives no AOV that is asked for.
+    background_aovs: Option<BackgroundAovs>,
 }
 
 impl Scene {

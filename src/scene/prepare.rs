@@ -1,5 +1,6 @@
 //! From what was authored to what is traced: the only place that sees both sides.
 
+mod aovs;
 mod cache;
 mod camera;
 mod dome;
@@ -20,8 +21,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::aovs::BackgroundAovs;
 use super::effects::emits;
 use super::framing::world_bounds;
+use super::surroundings::Surroundings;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
 use crate::error::{Error, Result, Warnings};
@@ -58,7 +61,7 @@ pub struct Prepared {
 /// Turns `desc` into what is traced, as `settings` ask.
 ///
 /// # Errors
-/// An index of `desc` that is out of range, an unknown camera or light group, a picture without size.
+/// An index of `desc` that is out of range, an unknown camera, light group or AOV, a picture without size.
 pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prepared> {
     prepare_with(desc, view, settings, &mut Cache::default())
 }
@@ -75,14 +78,20 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
     let camera = camera::prepare(&camera_desc, &desc.render, whole, origin);
 
-    let passes = settings.passes.resolve(&light_groups(&desc)).map_err(|what| Error::invalid(&desc.place, what))?;
+    let passes = settings.passes.resolve(&light_groups(&desc), &aovs::declared(&desc));
+    let passes = passes.map_err(|what| Error::invalid(&desc.place, what))?;
+    aovs::keep(&mut desc, passes.aovs());
     let catchers = desc.instances.iter().any(|instance| instance.catcher);
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes } =
-        materials::prepare(&mut desc, settings, cache, &mut warnings);
+    let Materials { list: materials, textures, names, domes, background } =
+        materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
+    let background_aovs = background.map(|(program, outputs)| {
+        let surroundings = Surroundings { program, textures: textures.clone(), camera, origin };
+        BackgroundAovs { surroundings, outputs }
+    });
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
     let mut geometry = geometry::prepare(&desc, origin, &materials, &links, cache, &mut warnings);
@@ -133,6 +142,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         materials,
         textures,
         asked,
+        background_aovs,
     };
     Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
 }
@@ -150,6 +160,9 @@ impl Scene {
         let (camera, whole) = camera::choose(&desc, &view, &mut Warnings::new())?;
         self.size = cropped(&desc, whole)?;
         self.camera = camera::prepare(&camera, render, whole, self.origin);
+        if let Some(background) = &mut self.background_aovs {
+            background.surroundings.camera = self.camera;
+        }
         self.exposure = camera::exposure(&camera);
         Ok(())
     }

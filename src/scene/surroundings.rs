@@ -8,9 +8,9 @@ use crate::math::{DVec3, Rgb, Vec3};
 use crate::texture::graph::{Beside, Hit, Program};
 use crate::texture::{Texture, TextureRef};
 
-/// A dome's graph and what it goes by.
+/// A graph of a dome or of the background, and what it goes by.
 pub struct Surroundings {
-    /// Gives the radiance alone.
+    /// Of a dome it gives the radiance alone.
     pub program: Program,
     /// All textures.
     pub textures: Arc<Vec<Texture>>,
@@ -23,11 +23,15 @@ pub struct Surroundings {
 impl Surroundings {
     /// Radiance that arrives from the unit direction `wi`, finite and not negative.
     pub fn radiance(&self, wi: Vec3) -> Rgb {
-        let towards = Towards { direction: wi.as_dvec3(), around: self };
         let mut values = [[0.0; 4]];
-        self.program.run(&towards, &self.textures, &mut values);
+        self.run(wi, &mut values);
         let [r, g, b] = std::array::from_fn(|i| values[0][i].clamp(0.0, f64::from(f32::MAX)) as f32);
         Rgb::new(r, g, b)
+    }
+
+    /// All that the program gives for the unit direction `wi`.
+    pub fn run(&self, wi: Vec3, values: &mut [Value]) {
+        self.program.run(&Towards { direction: wi.as_dvec3(), around: self }, &self.textures, values);
     }
 }
 

@@ -566,3 +566,48 @@ def catcher():
             obj.is_shadow_catcher = True
     bpy.context.scene.render.film_transparent = True
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+
+
+def _aov(tree, name, color=(0.0, 0.0, 0.0), value=0.0):
+    node = tree.nodes.new("ShaderNodeOutputAOV")
+    node.aov_name = name
+    node.inputs["Color"].default_value = (*color, 1.0)
+    node.inputs["Value"].default_value = value
+    return node
+
+
+def shader_aovs():
+    """AOVs of surfaces by graphs, in a group, twice of one name, muted; of panes, a hole, a sphere of glass, the world."""
+    for name, kind in (("Place", "COLOR"), ("Mark", "VALUE"), ("Muted", "VALUE"), ("Combined", "VALUE"),
+                       ("Shadow", "VALUE")):
+        aov = bpy.context.view_layer.aovs.add()
+        aov.name, aov.type = name, kind
+    floor = material("Floor", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.5, 0.4, 1.0))
+    inner = bpy.data.node_groups.new("Place", "ShaderNodeTree")
+    position = inner.nodes.new("ShaderNodeNewGeometry").outputs["Position"]
+    inner.links.new(position, _aov(inner, "Place").inputs["Color"])
+    floor.node_tree.nodes.new("ShaderNodeGroup").node_tree = inner
+    for value in (1.5, 2.0):
+        _aov(floor.node_tree, "Mark", value=value)
+    _aov(floor.node_tree, "Muted", value=5.0).mute = True
+    camera = room(floor)
+    camera.rotation_euler[0] = math.radians(72)
+    lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0)
+    # White ones: Cycles passes a pane by the weights of its shaders, colors included.
+    clear = ("ShaderNodeBsdfTransparent", {})
+    for x, opacity in ((-1.6, 0.3), (1.6, 0.7)):
+        pane = mix(f"Pane {opacity}", clear, ("ShaderNodeBsdfDiffuse", {"Color": (1.0, 1.0, 1.0, 1.0)}), opacity)
+        _aov(pane.node_tree, "Place", (x, 7.0, 8.0))
+        _aov(pane.node_tree, "Mark", value=20.0)
+        bpy.ops.mesh.primitive_plane_add(size=1.4, location=(x, -2.0, 1.6), rotation=(math.radians(80), 0, 0))
+        bpy.context.object.data.materials.append(pane)
+    for x, kind in ((-0.6, "ShaderNodeBsdfDiffuse"), (0.6, "ShaderNodeBsdfGlass")):
+        ball = material(kind, kind)
+        _aov(ball.node_tree, "Mark", value=9.0)
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4, radius=0.35, location=(x, -2.5, 2.5))
+        bpy.context.object.data.materials.append(ball)
+        bpy.context.object.is_holdout = kind == "ShaderNodeBsdfDiffuse"
+    tree = bpy.context.scene.world.node_tree
+    direction = tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"]
+    tree.links.new(direction, _aov(tree, "Place").inputs["Color"])
+    _aov(tree, "Mark", value=6.0)

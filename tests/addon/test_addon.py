@@ -83,6 +83,23 @@ def test_particle_hair_has_the_shape_of_cycles(blender, tmp_path):
             assert np.mean(np.abs(found - expected) > 0.1 * expected.max()) < 0.05, (layer, c)
 
 
+def test_shader_aovs_are_those_of_cycles(blender, tmp_path):
+    paths, output = blender.run("side_by_side", "shader_aovs", tmp_path, 128, 48)
+    cycles, ours = [read(path) for path in paths]
+    names = [f"ViewLayer.{name}" for name in ("Place.R", "Place.G", "Place.B", "Place.A", "Mark.X", "Muted.X")]
+    for name in names:
+        expected, found = cycles[name], ours[name]
+        noise = np.std(found - expected) / np.sqrt(expected.size)
+        assert abs(found.mean() - expected.mean()) <= 0.0005 * np.abs(expected).mean() + 4.0 * noise, name
+        # Pixel by pixel, too: edges and what is behind a pane are the only noise.
+        assert np.mean(np.abs(found - expected) > 0.1 * np.abs(expected).max()) < 0.02, name
+    assert np.abs(ours["ViewLayer.Mark.X"]).max() > 20.0
+    # Names that Blender's and Penumbra's own passes have.
+    for name in ("Combined", "Shadow"):
+        assert f"ViewLayer.{name}.R" in ours and f"ViewLayer.{name}.X" not in ours
+        assert f'the shader AOV "{name}" is left out: another pass has its name' in output
+
+
 def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
     (_, path), _ = blender.run("cancel", tmp_path)
     layers = read(path)

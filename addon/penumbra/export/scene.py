@@ -5,6 +5,7 @@ import json
 import bpy
 import numpy as np
 
+from .. import passes
 from . import camera, images, lights, mesh, nodes, particles, rounds
 
 # Types of objects that evaluate to a mesh.
@@ -92,7 +93,10 @@ class Exporter:
         document = {
             "file": bpy.data.filepath,
             "version": list(bpy.app.version),
-            "render": camera.render(scene, size, depsgraph.view_layer_eval),
+            "render": {
+                **camera.render(scene, size, depsgraph.view_layer_eval),
+                "aovs": [[aov.name, aov.type] for aov in passes.aovs(depsgraph.view_layer)],
+            },
             "camera": camera.camera(camera_object or scene.camera, scene),
             "world": lights.world(scene.world, self),
             "lights": self._lights,

@@ -59,6 +59,9 @@ pub fn add(data: &WorldData, images: &mut Images<'_>, desc: &mut SceneDesc, warn
         Some(tree) => nodes::world(tree, images, place.clone(), warnings),
         None => vec![WorldPart { emission: WorldEmission::Constant(data.color), seen: Seen::ALL }],
     };
+    if let Some(tree) = data.nodes.as_ref().filter(|_| Visibility::from(data.visibility).camera) {
+        desc.background_aovs = nodes::background_aovs(tree, images, place.clone(), warnings);
+    }
     // A dome's space has y up and the image's centre at +x; Blender's has z up.
     let upright = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y);
     for WorldPart { emission, seen } in parts {

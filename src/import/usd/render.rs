@@ -389,7 +389,7 @@ pub(super) mod tests {
     fn every_name_is_that_of_a_pass_and_every_pass_has_one() {
         let known = |name: &str| crate::film::PASSES.iter().any(|pass| pass.name == name);
         assert!(NAMES.iter().all(|(_, pass)| known(pass)));
-        for pass in crate::film::PASSES.iter().filter(|pass| pass.group_prefix().is_none()) {
+        for pass in crate::film::PASSES.iter().filter(|pass| pass.prefix().is_none()) {
             assert_eq!(of_name(pass.name), [pass.name]);
             assert_eq!(of_name(pass.layer), [pass.name]);
         }

@@ -1,5 +1,6 @@
 //! Materials with their constants folded, and the textures and programs that are left.
 
+mod aovs;
 mod parts;
 
 use std::borrow::Cow;
@@ -13,6 +14,7 @@ use super::mend::Mended;
 use crate::desc::graph::{Function, Graph, Leaf, Value, ValueId};
 use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureTransform};
 use crate::error::Warnings;
+use crate::film::Aov;
 use crate::math::Rgb;
 use crate::scene::Material;
 use crate::scene::asked::Names;
@@ -32,17 +34,25 @@ pub struct Materials {
     pub names: Names,
     /// Programs of the radiance of `SceneDesc::dome_shaders`.
     pub domes: Vec<Program>,
+    /// Program of what the background gives as AOVs, and which AOV each of its values is.
+    pub background: Option<(Program, Vec<usize>)>,
 }
 
-/// The materials of `desc`. Texels move out of `desc` into the textures.
-pub fn prepare(desc: &mut SceneDesc, settings: &Settings, cache: &mut Cache, warnings: &mut Warnings) -> Materials {
+/// The materials of `desc`, which give `aovs`. Texels move out of `desc` into the textures.
+pub fn prepare(
+    desc: &mut SceneDesc,
+    settings: &Settings,
+    aovs: &[Aov],
+    cache: &mut Cache,
+    warnings: &mut Warnings,
+) -> Materials {
     let mut used = vec![false; desc.materials.len()];
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
     let images = prepare_images(desc, &used, cache, warnings);
     let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
-    let mut builder = Builder { desc, settings, textures, names: Names::default() };
+    let mut builder = Builder { desc, settings, aovs, textures, names: Names::default() };
     let fallback = MaterialDesc::default();
     let materials = desc.materials.iter().zip(&used).map(|(material, used)| (material, *used));
     let list = materials
@@ -55,7 +65,8 @@ pub fn prepare(desc: &mut SceneDesc, settings: &Settings, cache: &mut Cache, war
         graphs::program(&fallback, &shader.graph, &[shader.radiance], &mut builder.textures, &mut builder.names)
     });
     let domes = domes.collect();
-    Materials { list, textures: builder.textures.list, names: builder.names, domes }
+    let background = aovs::background(&mut builder);
+    Materials { list, textures: builder.textures.list, names: builder.names, domes, background }
 }
 
 /// Pyramids of the images that materials in use and domes look up, in parallel.
@@ -77,6 +88,10 @@ fn prepare_images(
         for texture in graphs::looked_up(&shader.graph, [shader.radiance]) {
             wanted[desc.textures[texture as usize].image as usize] = true;
         }
+    }
+    let background = &desc.background_aovs;
+    for texture in graphs::looked_up(&background.graph, background.outputs.iter().flat_map(|(_, values)| *values)) {
+        wanted[desc.textures[texture as usize].image as usize] = true;
     }
     // Texels that light are still needed.
     let mut lights = vec![false; desc.images.len()];
@@ -156,6 +171,7 @@ impl Textures<'_> {
 struct Builder<'a> {
     desc: &'a SceneDesc,
     settings: &'a Settings,
+    aovs: &'a [Aov],
     textures: Textures<'a>,
     names: Names,
 }
@@ -336,7 +352,18 @@ impl Builder<'_> {
             .filter(|o| self.settings.occlusion_maps && o.factor != 0.0)
             .filter(|o| o.texture.is_some() || o.graph.is_some())
             .map(|o| self.scalar(inputs, &o));
-        let programs = Programs { opacity, emission: light, surface, normal, bends, occlusion: self.program(inputs) };
+        let occluded = self.program(inputs);
+        // What it is called:
+        let aovs = aovs::inputs(self, inputs);
+        let programs = Programs {
+            opacity,
+            emission: light,
+            surface,
+            normal,
+            bends,
+            occlusion: occluded,
+            aovs: self.program(inputs),
+        };
         Material {
             parts,
             alpha,
@@ -354,6 +381,7 @@ impl Builder<'_> {
             holdout: desc.holdout,
             normal: normal_map,
             occlusion,
+            aovs,
             programs: programs.any().then(|| Arc::new(programs)),
             inputs: std::mem::take(&mut inputs.textures),
         }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::desc::RenderDesc;
+use crate::desc::{AovDesc, AovKind, RenderDesc};
 
 /// Settings that are the scene's and not the engine's.
 #[derive(Clone, Debug, Deserialize)]
@@ -20,6 +20,8 @@ pub struct RenderData {
     pub film_transparent: bool,
     /// The view layer's.
     pub pass_alpha_threshold: f64,
+    /// The view layer's shader AOVs: name, and `COLOR` or `VALUE`.
+    pub aovs: Vec<(String, String)>,
 }
 
 impl Default for RenderData {
@@ -31,6 +33,7 @@ impl Default for RenderData {
             exposure: 1.0,
             film_transparent: false,
             pass_alpha_threshold: 0.5,
+            aovs: Vec::new(),
         }
     }
 }
@@ -49,7 +52,13 @@ impl RenderData {
             }),
             film_transparent: Some(self.film_transparent),
             pass_alpha_threshold: self.pass_alpha_threshold,
+            aovs: self.aovs.iter().map(aov).collect(),
             ..RenderDesc::default()
         }
     }
+}
+
+fn aov((name, kind): &(String, String)) -> AovDesc {
+    let kind = if kind == "VALUE" { AovKind::Value } else { AovKind::Color };
+    AovDesc { name: name.as_str().into(), kind }
 }

@@ -151,25 +151,46 @@ impl<'a, 'i> Flow<'a, 'i> {
 
     /// The input of a group's output node that its output `output` shows.
     fn group_output(&mut self, group: At<'a>, output: usize) -> Option<(At<'a>, usize)> {
-        let tree = group.node.tree.as_deref()?;
         let id = &group.node.outputs.get(output)?.id;
-        let scope = match self.entered.get(&(group.scope, group.index)) {
-            Some(scope) => *scope,
-            None => {
-                if self.depth(group.scope) >= DEEPEST {
-                    self.warn(format!("groups are nested more than {DEEPEST} deep; the inner ones are left out"));
-                    return None;
-                }
-                self.scopes.push(Scope { tree, group: Some(group) });
-                self.entered.insert((group.scope, group.index), self.scopes.len() - 1);
-                self.scopes.len() - 1
-            }
-        };
+        let scope = self.enter(group)?;
+        let tree = self.scopes[scope].tree;
         let is_output = |node: &NodeData| node.r#type == "NodeGroupOutput";
         let outputs = || tree.nodes.iter().enumerate().filter(|(_, node)| is_output(node));
         let active = outputs().find(|(_, node)| node.flag("is_active_output")).or_else(|| outputs().next());
         let (index, node) = active?;
         Some((At { scope, index, node }, node.inputs.iter().position(|socket| socket.id == *id)?))
+    }
+
+    /// The scope of a group's tree; `None` for one without, or that is nested too deep.
+    fn enter(&mut self, group: At<'a>) -> Option<usize> {
+        let tree = group.node.tree.as_deref()?;
+        if let Some(scope) = self.entered.get(&(group.scope, group.index)) {
+            return Some(*scope);
+        }
+        if self.depth(group.scope) >= DEEPEST {
+            self.warn(format!("groups are nested more than {DEEPEST} deep; the inner ones are left out"));
+            return None;
+        }
+        self.scopes.push(Scope { tree, group: Some(group) });
+        self.entered.insert((group.scope, group.index), self.scopes.len() - 1);
+        Some(self.scopes.len() - 1)
+    }
+
+    /// Every node of a kind, those in groups that are not muted included; of a group that is used twice both.
+    pub fn all_of(&mut self, kind: &str) -> Vec<At<'a>> {
+        let (mut found, mut scopes) = (Vec::new(), vec![0]);
+        while let Some(scope) = scopes.pop() {
+            let tree = self.scopes[scope].tree;
+            for (index, node) in tree.nodes.iter().enumerate() {
+                let at = At { scope, index, node };
+                if node.r#type == kind {
+                    found.push(at);
+                } else if node.r#type == "ShaderNodeGroup" && !node.mute {
+                    scopes.extend(self.enter(at));
+                }
+            }
+        }
+        found
     }
 
     fn depth(&self, scope: usize) -> usize {

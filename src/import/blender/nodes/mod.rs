@@ -4,6 +4,7 @@
 //! engine's graph; each value node is a line in the table of `values.rs` and a function in the file of its
 //! menu. Shaders become a weighted sum (`closure.rs`), which is a surface (`surface.rs`), a world or a lamp.
 
+mod aov;
 mod closure;
 mod color;
 mod flow;
@@ -27,7 +28,7 @@ use super::image::Images;
 use super::layers::UvSets;
 use super::light::LampShader;
 use super::world::WorldPart;
-use crate::desc::MaterialDesc;
+use crate::desc::{BackgroundAovs, MaterialDesc};
 use crate::error::{Place, Warnings};
 use flow::Flow;
 
@@ -43,6 +44,17 @@ pub fn world(tree: &TreeData, images: &mut Images<'_>, place: Place, warnings: &
     let version = images.version();
     let uv_sets = UvSets::default();
     world::world(&mut Flow::new(tree, images, &uv_sets, version, place, warnings))
+}
+
+/// What the AOV Output nodes of a world give.
+pub fn background_aovs(
+    tree: &TreeData,
+    images: &mut Images<'_>,
+    place: Place,
+    warnings: &mut Warnings,
+) -> BackgroundAovs {
+    let version = images.version();
+    aov::background(Flow::new(tree, images, &UvSets::default(), version, place, warnings))
 }
 
 /// `base` with what the nodes of a material make of its surface.

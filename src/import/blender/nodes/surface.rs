@@ -3,6 +3,7 @@
 //! Each BSDF node is a lobe with its weight and its normal; the Principled BSDF alone is the material's own layered
 //! surface. What is transparent passes on top of that, what emits is added.
 
+use super::aov;
 use super::closure::{self, Part};
 use super::flow::{At, Flow};
 use super::lamp::emission;
@@ -46,6 +47,7 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
             mixed(flow, sum, base)
         }
     };
+    material.aovs = aov::outputs(flow);
     material.graph = std::mem::take(&mut flow.graph);
     material
 }
