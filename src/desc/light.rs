@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::Visibility;
 use super::graph::{Atmosphere, Graph, ValueId};
+use super::{ShadowDesc, Visibility};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -247,6 +247,8 @@ pub struct LightLinks {
     pub group: Option<Arc<str>>,
     /// False for a light that passes through everything.
     pub cast_shadow: bool,
+    /// How the shadows look that it casts.
+    pub shadow: ShadowDesc,
     /// Instances that it lights; `None` for all.
     pub receivers: Option<LinkSet>,
     /// Instances that stop its light; `None` for all that cast shadows.
@@ -257,7 +259,14 @@ pub struct LightLinks {
 
 impl Default for LightLinks {
     fn default() -> Self {
-        Self { group: None, cast_shadow: true, receivers: None, blockers: None, response: [1.0; 2] }
+        Self {
+            group: None,
+            cast_shadow: true,
+            shadow: ShadowDesc::default(),
+            receivers: None,
+            blockers: None,
+            response: [1.0; 2],
+        }
     }
 }
 

@@ -16,6 +16,7 @@ mod material;
 mod mesh;
 mod render;
 mod rounds;
+mod shadow;
 mod texture;
 
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
@@ -33,6 +34,7 @@ pub use material::{
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::{Conform, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
+pub use shadow::ShadowDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use std::sync::Arc;

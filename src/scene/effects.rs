@@ -4,7 +4,7 @@
 //! point: per pixel, per hit or per bounce.
 
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc};
+use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -41,7 +41,7 @@ pub struct Effects {
     pub emissive: bool,
     /// Some light can be found by rays that surfaces have sampled.
     pub found_by_rays: bool,
-    /// Some light casts no shadow, or not that of every object.
+    /// Some light casts no shadow, not that of every object, or one that is not black or ends.
     pub own_shadows: bool,
     /// The albedo of the first surface.
     pub color: bool,
@@ -115,7 +115,7 @@ impl Effects {
 }
 
 fn has_own_shadow(links: &LightLinks) -> bool {
-    !links.cast_shadow || links.blockers.is_some()
+    !links.cast_shadow || links.blockers.is_some() || links.shadow != ShadowDesc::default()
 }
 
 pub(super) fn emits(material: &MaterialDesc) -> bool {

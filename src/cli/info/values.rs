@@ -122,6 +122,12 @@ fn links(links: &LightLinks, scene: &SceneDesc) -> Value {
     json!({
         "group": links.group.as_deref(),
         "cast_shadow": links.cast_shadow,
+        "shadow": {
+            "color": links.shadow.color,
+            "distance": links.shadow.distance,
+            "falloff": links.shadow.falloff,
+            "gamma": links.shadow.gamma,
+        },
         "response": links.response,
         "receivers": links.receivers.as_ref().map(set),
         "blockers": links.blockers.as_ref().map(set),
