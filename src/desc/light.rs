@@ -148,6 +148,15 @@ pub struct ShapingDesc {
     pub ies: Option<IesRef>,
 }
 
+/// How the emission of an object varies with direction, as that of a light that stands somewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapedDesc {
+    /// How.
+    pub shaping: ShapingDesc,
+    /// The light to world: as that of a [`LightDesc`], its axis is local −z.
+    pub transform: DAffine3,
+}
+
 /// The edge of a cone; angles are half angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConeDesc {

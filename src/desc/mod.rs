@@ -25,7 +25,7 @@ pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
 pub use image::{ColorSpace, ImageDesc, PixelData};
 pub use light::{
     ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
-    ShapingDesc,
+    ShapedDesc, ShapingDesc,
 };
 pub use material::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,

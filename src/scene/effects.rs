@@ -39,6 +39,8 @@ pub struct Effects {
     pub lamps: bool,
     /// Some object emits, or is unlit.
     pub emissive: bool,
+    /// What some object emits is shaped by direction.
+    pub shaped_emission: bool,
     /// Some light can be found by rays that surfaces have sampled.
     pub found_by_rays: bool,
     /// Some light casts no shadow, not that of every object, or one that is not black or ends.
@@ -79,6 +81,7 @@ impl Effects {
             absorption: any(&absorbs),
             lamps,
             emissive: emissive || unlit,
+            shaped_emission: emissive && scene.instances.iter().any(|instance| instance.shaped.is_some()),
             found_by_rays: lamps || emissive || in_background || unlit,
             own_shadows: scene.lights.iter().any(|light| has_own_shadow(&light.links))
                 || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
@@ -104,6 +107,7 @@ impl Effects {
             irradiance: passes.needs_irradiance(),
             lamps: true,
             emissive: true,
+            shaped_emission: true,
             found_by_rays: true,
             own_shadows: true,
             color: passes.needs_color() || passes.needs_denoising(),

@@ -7,7 +7,7 @@ use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
 use super::links::Links;
 use super::mend::Mended;
-use super::{dome, lamp, shadow_look, suns};
+use super::{dome, lamp, shadow_look, shaping, suns};
 use crate::desc::{LightDesc, LightKind, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
 use crate::light::{Light, Rules, Seen, ShadowLook};
@@ -74,6 +74,11 @@ pub fn prepare(
         let rules = rules(&of.links, look, of.visibility);
         instance.rules = Some(Box::new(rules.clone()));
         let shape = &geometry.shapes[instance.shape as usize];
+        let (profile, shines) = shaping::of_instance(desc, of, warnings);
+        instance.profile = profile;
+        if !shines {
+            continue;
+        }
         if let Some(emitter) = emissive.light(instance, index as u32, shape) {
             instance.light = Some(lights.len() as u32);
             lights.push(Light { emitter, rules });
