@@ -7,7 +7,9 @@ mod scene;
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{ColorInput, LightKind, LightLinks, LinkSet, MaterialDesc, ScalarInput, Visibility};
+use penumbra::desc::{
+    AlphaMode, ColorInput, LightKind, LightLinks, LinkSet, MaterialDesc, ScalarInput, ShadowDesc, Visibility,
+};
 use penumbra::math::{DAffine3, DVec3};
 use penumbra::scene::{View, prepare};
 use penumbra::settings::Settings;
@@ -363,4 +365,147 @@ fn a_glowing_object_and_a_dome_have_groups_like_lamps() {
     let of_sky = shadow_alone(&|alone| alone.desc.materials[1].emission = ColorInput::constant([0.0; 3]));
     close("glow", mean(&both, "Shadow_glow", 0), of_glow, 0.01);
     close("sky", mean(&both, "Shadow_sky", 0), of_sky, 0.01);
+}
+
+fn shadow(shadow: ShadowDesc) -> LightLinks {
+    LightLinks { shadow, ..LightLinks::default() }
+}
+
+/// UsdLux' ShadowAPI: what is in full shadow has the shadow's color times the light, whichever strategy finds it.
+#[test]
+fn shadows_have_the_color_of_the_light_that_they_leave() {
+    for (name, kind) in kinds() {
+        for roughness in [0.0, 0.2, 0.6] {
+            let free = values(&lit(kind, roughness, LightLinks::default(), Visibility::ALL));
+            let links = shadow(ShadowDesc { color: [0.25, 0.0, 1.0], ..ShadowDesc::default() });
+            let mut lidded = lit(kind, roughness, links, Visibility::ALL);
+            same(name, values(&lidded), free);
+            add_lid(&mut lidded);
+            let [diffuse, glossy, combined, shadow, unshadowed] = free;
+            let expected = [0.25 * diffuse, 0.25 * glossy, 0.25 * combined, 0.25 * shadow, unshadowed];
+            same(&format!("{name}, roughness {roughness}"), values(&lidded), expected);
+            let picture = picture(&lidded.desc, 6, &direct(256));
+            assert_eq!(mean(&picture, "Shadow", 1), 0.0, "{name}");
+            close(name, mean(&picture, "Shadow", 2), 1.0, 1e-5);
+        }
+    }
+}
+
+/// White shadows are none, in bounced light, too.
+#[test]
+fn bounced_light_has_the_same_shadows() {
+    for (name, kind) in kinds() {
+        let bounced = |links: LightLinks| {
+            let mut builder = lit(kind, 0.3, links, Visibility::ALL);
+            add_lid(&mut builder);
+            builder.quad([-1.0, 0.0, -1.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0], 0);
+            let picture = picture(&builder.desc, 6, &Settings { max_bounces: 3, ..settings("all", 512) });
+            ["Diffuse Indirect", "Glossy Indirect", "Combined"].map(|layer| mean(&picture, layer, 1))
+        };
+        let white = bounced(shadow(ShadowDesc { color: [1.0; 3], ..ShadowDesc::default() }));
+        let none = bounced(LightLinks { cast_shadow: false, ..LightLinks::default() });
+        for (white, none) in white.into_iter().zip(none) {
+            assert!(none > 0.0, "{name}");
+            close(name, white, none, 1e-4);
+        }
+    }
+}
+
+#[test]
+fn blockers_beyond_the_distance_cast_no_shadow() {
+    for (name, kind) in kinds() {
+        let free = values(&lit(kind, 0.3, LightLinks::default(), Visibility::ALL));
+        // The lid is one metre above, and its sides are nine metres away.
+        for (distance, falloff, counts) in [(0.0, 1.0, false), (0.9, 0.9, false), (1e3, 0.0, true), (1e3, 1.0, true)] {
+            let links = shadow(ShadowDesc { distance, falloff, ..ShadowDesc::default() });
+            let mut builder = lit(kind, 0.3, links, Visibility::ALL);
+            add_lid(&mut builder);
+            let found = values(&builder);
+            if counts {
+                assert_eq!(found[..4], [0.0; 4], "{name}, {distance}");
+                same(name, [free[0], free[1], free[2], free[3], found[4]], free);
+            } else {
+                same(&format!("{name}, {distance}"), found, free);
+            }
+        }
+    }
+}
+
+#[test]
+fn only_linked_objects_cast_fading_shadows() {
+    let look = ShadowDesc { color: [0.5; 3], distance: 1.5, falloff: 1.0, gamma: 1.0 };
+    for (exclude, expected) in [(true, 1.0), (false, 0.75)] {
+        let mut builder = lit(SUN, 0.3, shadow(look), Visibility::ALL);
+        let lid = add_lid(&mut builder);
+        builder.desc.lights[0].links.blockers = Some(LinkSet { instances: vec![lid], exclude });
+        close("shadow", values(&builder)[3], expected, 1e-5);
+    }
+}
+
+const SUN: Kind = Kind::Lamp(LightKind::Distant { irradiance: [3.0; 3], angle: 0.0 });
+
+/// Horizontal sheets of the given height and alpha in the way of `kind`; the share of its light that arrives.
+fn below_sheets(kind: Kind, look: ShadowDesc, sheets: &[(f64, f64)]) -> f64 {
+    let mut builder = lit(kind, 0.3, shadow(look), Visibility::ALL);
+    for &(height, alpha) in sheets {
+        let sheet = builder.lambert(0.0);
+        let material = &mut builder.desc.materials[sheet as usize];
+        (material.alpha, material.alpha_mode) = (ScalarInput::constant(alpha), AlphaMode::Blend);
+        builder.quad([-9.0, height, -9.1], [18.0, 0.0, 0.0], [0.0, 0.0, 18.0], sheet);
+    }
+    values(&builder)[3]
+}
+
+#[test]
+fn shadows_fade_before_their_distance() {
+    let look = |gamma| ShadowDesc { distance: 2.0, falloff: 1.0, gamma, ..ShadowDesc::default() };
+    for (gamma, sheets, expected) in [
+        (1.0, &[(0.5, 1.0)][..], 0.0),
+        (1.0, &[(1.5, 1.0)], 0.5),
+        (2.0, &[(1.5, 1.0)], 0.75),
+        (0.5, &[(1.75, 1.0)], 0.5),
+        (1.0, &[(2.5, 1.0)], 1.0),
+        // Where the zone begins and where it ends.
+        (1.0, &[(1.0, 1.0)], 0.0),
+        (1.0, &[(1.999, 1.0)], 0.999),
+        // Of opaque blockers the nearest counts; what is partly open lets the same share of each pass.
+        (1.0, &[(1.5, 1.0), (1.75, 1.0)], 0.5),
+        (1.0, &[(1.5, 0.5)], 0.75),
+        (1.0, &[(0.5, 0.5)], 0.5),
+        (1.0, &[(1.25, 0.5), (1.5, 1.0)], 0.625 * 0.5),
+        (1.0, &[(1.5, 0.5), (1.75, 0.5), (2.5, 1.0)], 0.75 * 0.875),
+    ] {
+        let found = below_sheets(SUN, look(gamma), sheets);
+        assert!((found - expected).abs() < 2e-4, "{sheets:?}, gamma {gamma}: {found} instead of {expected}");
+    }
+    // With a color.
+    let look = ShadowDesc { color: [0.5; 3], ..look(1.0) };
+    close("color", below_sheets(SUN, look, &[(1.5, 1.0)]), 0.75, 1e-5);
+}
+
+/// Of a constant dome, whose light rays alone find: with a zone as long as the distance D a sheet at the height h counts
+/// for 1 − m / cos θ, where m = h / D, and 2m − m² of the irradiance arrives. Of a panel, whose light both strategies
+/// find, by quadrature.
+#[test]
+fn lights_of_any_size_fade_by_the_distance_along_each_ray() {
+    let look = |distance| ShadowDesc { distance, falloff: distance, ..ShadowDesc::default() };
+    let dome = Kind::Lamp(LightKind::Dome { radiance: [1.0; 3], image: None });
+    for distance in [1.25, 2.0, 5.0] {
+        let m = 1.0 / distance;
+        close("dome", below_sheets(dome, look(distance), &[(1.0, 1.0)]), 2.0 * m - m * m, 2e-3);
+    }
+    let (width, height, radiance) = (3.0, 2.0, [3.0; 3]);
+    let panel = Kind::Lamp(LightKind::Rect { width, height, radiance, spread: PI, two_sided: false, image: None });
+    for distance in [1.125, 1.5, 4.0] {
+        let (mut arrives, mut all) = (0.0, 0.0);
+        for (i, j) in (0..200).flat_map(|i| (0..200).map(move |j| (i, j))) {
+            let along = |k: i32| (f64::from(k) + 0.5) / 200.0 - 0.5;
+            let to_light = DVec3::new(0.3 + width * along(i), 2.0, height * along(j));
+            let weight = to_light.length().powi(-4);
+            all += weight;
+            // The sheet is halfway.
+            arrives += weight * (0.5 * to_light.length() / distance).min(1.0);
+        }
+        close("panel", below_sheets(panel, look(distance), &[(1.0, 1.0)]), arrives / all, 2e-3);
+    }
 }

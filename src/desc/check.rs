@@ -31,6 +31,9 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         for &material in instance.materials.iter().flatten() {
             index(material, scene.materials.len(), &instance.place, "material")?;
         }
+        if let Some(ies) = instance.shaped.as_ref().and_then(|shaped| shaped.shaping.ies) {
+            index(ies.profile, scene.ies.len(), &instance.place, "IES profile")?;
+        }
     }
     for texture in &scene.textures {
         index(texture.image, scene.images.len(), &texture.place, "image")?;

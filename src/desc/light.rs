@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::Visibility;
 use super::graph::{Atmosphere, Graph, ValueId};
+use super::{ShadowDesc, Visibility};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -148,6 +148,15 @@ pub struct ShapingDesc {
     pub ies: Option<IesRef>,
 }
 
+/// How the emission of an object varies with direction, as that of a light that stands somewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapedDesc {
+    /// How.
+    pub shaping: ShapingDesc,
+    /// The light to world: as that of a [`LightDesc`], its axis is local −z.
+    pub transform: DAffine3,
+}
+
 /// The edge of a cone; angles are half angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConeDesc {
@@ -247,6 +256,8 @@ pub struct LightLinks {
     pub group: Option<Arc<str>>,
     /// False for a light that passes through everything.
     pub cast_shadow: bool,
+    /// How the shadows look that it casts.
+    pub shadow: ShadowDesc,
     /// Instances that it lights; `None` for all.
     pub receivers: Option<LinkSet>,
     /// Instances that stop its light; `None` for all that cast shadows.
@@ -257,7 +268,14 @@ pub struct LightLinks {
 
 impl Default for LightLinks {
     fn default() -> Self {
-        Self { group: None, cast_shadow: true, receivers: None, blockers: None, response: [1.0; 2] }
+        Self {
+            group: None,
+            cast_shadow: true,
+            shadow: ShadowDesc::default(),
+            receivers: None,
+            blockers: None,
+            response: [1.0; 2],
+        }
     }
 }
 

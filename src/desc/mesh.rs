@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::LightLinks;
+use super::{LightLinks, ShapedDesc};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -116,6 +116,8 @@ pub struct InstanceDesc {
     pub visibility: Visibility,
     /// Rules of the light that it emits, where it emits any.
     pub links: LightLinks,
+    /// What it emits is shaped by direction; `None` where its materials alone say it.
+    pub shaped: Option<Arc<ShapedDesc>>,
     /// True where the camera sees a hole in the picture instead: black, of alpha 0. All other rays see it as
     /// it is.
     pub holdout: bool,

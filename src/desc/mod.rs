@@ -17,6 +17,7 @@ mod material;
 mod mesh;
 mod render;
 mod rounds;
+mod shadow;
 mod texture;
 
 pub use aov::{AovDesc, AovKind, AovOutput, BackgroundAovs};
@@ -26,7 +27,7 @@ pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
 pub use image::{ColorSpace, ImageDesc, PixelData};
 pub use light::{
     ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
-    ShapingDesc,
+    ShapedDesc, ShapingDesc,
 };
 pub use material::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
@@ -35,6 +36,7 @@ pub use material::{
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::{Conform, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
+pub use shadow::ShadowDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use std::sync::Arc;

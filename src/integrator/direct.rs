@@ -105,7 +105,7 @@ impl Shading<'_> {
         if scene.is_caught(&ray) {
             return None;
         }
-        Some([irradiance * scene.transmittance(&ray, rules.shadow), irradiance])
+        Some([irradiance * scene.arriving(&ray, rules), irradiance])
     }
 
     fn decision(&self, decision: Decision) -> Dimension {
@@ -122,7 +122,7 @@ fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> O
 
 fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
     let ray = end.map_or_else(|| it.spawn(wi), |end| it.spawn_to(end));
-    scene.transmittance(&ray, rules.shadow)
+    scene.arriving(&ray, rules)
 }
 
 /// True where shading and geometric normal disagree on which side `wi` is.

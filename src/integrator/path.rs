@@ -13,7 +13,7 @@ use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
 use super::{ao, catcher};
 use crate::bsdf::{ByLobe, Lobe};
 use crate::film::PixelSample;
-use crate::light::{Emitter, Rules, Shadow};
+use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
 use crate::scene::{Coverage, Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
@@ -78,7 +78,7 @@ impl Path {
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
     /// weight. Lights with shadow rules of their own are counted where the ray begins.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
-        if rules.shadow != Shadow::Cast || !rules.lights(last.from.class) {
+        if !rules.stops_like_rays() || !rules.lights(last.from.class) {
             return;
         }
         let l = seen(last.shares, rules) * (self.beta * le);
@@ -406,7 +406,7 @@ fn scatter(
             if unshadowed {
                 sample.unshadowed += weight.diffuse * (beta * found.le);
             }
-            if found.rules.shadow != Shadow::Cast {
+            if !found.rules.stops_like_rays() {
                 let l = weight * (beta * found.le * found.visibility(scene, &path.ray));
                 if first {
                     add_direct(sample, found.rules, l);

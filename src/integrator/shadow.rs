@@ -6,7 +6,7 @@
 //! lights with shadow rules of their own have them in both.
 
 use super::scattering::Scattering;
-use crate::light::{Emitter, EmitterHit, Rules, Shadow};
+use crate::light::{Emitter, EmitterHit, Rules};
 use crate::math::{Ray, Rgb};
 use crate::scene::{PathState, RayCone, Scene, mask};
 
@@ -28,12 +28,12 @@ impl Found<'_> {
     pub fn visibility(&self, scene: &Scene, ray: &Ray) -> Rgb {
         // Ends before the emitter, which may itself be something that stops light.
         let t_max = self.dist * (1.0 - 1e-5);
-        scene.transmittance(&Ray { t_max, ..*ray }, self.rules.shadow)
+        scene.arriving(&Ray { t_max, ..*ray }, self.rules)
     }
 }
 
 /// Calls `visit` with every emitter that `ray` from `last` would meet, in the state of the path then; if `all` is false only with
-/// those whose light not everything stops.
+/// those that have shadows of their own.
 pub fn emitters_along(
     scene: &Scene,
     last: &Scattering,
@@ -43,7 +43,7 @@ pub fn emitters_along(
     all: bool,
     mut visit: impl FnMut(Found<'_>),
 ) {
-    let asked = |rules: &Rules| (all || rules.shadow != Shadow::Cast) && rules.lights(last.from.class);
+    let asked = |rules: &Rules| (all || !rules.stops_like_rays()) && rules.lights(last.from.class);
     for (i, light, le) in scene.background(ray.d).filter(|(_, light, _)| asked(&light.rules)) {
         let le = le * last.mis_weight(scene, i, ray.d, None);
         visit(Found { le, dist: f32::INFINITY, rules: &light.rules });

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::placed::Placed;
 use super::tree::refined;
-use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Profile, Receiver};
 use crate::math::{Affine3A, Bounds, DVec3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
 use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
 use crate::shape::Mesh;
@@ -118,6 +118,14 @@ impl MeshLight {
         Some(Self { emitters, placed: Arc::new(placed) })
     }
 
+    /// The same with `profile`, without decay.
+    pub fn shaped(mut self, profile: Option<Arc<Profile>>) -> Self {
+        if profile.is_some() {
+            Arc::make_mut(&mut self.placed).profile = profile;
+        }
+        self
+    }
+
     /// The triangles, which other instances may share.
     pub fn emitters(&self) -> &Arc<MeshEmitters> {
         &self.emitters
@@ -208,7 +216,7 @@ impl Emitter for MeshLight {
         };
         let [_, b1, b2] = barycentrics.map(|b| b as f32);
         let pdf = (density * f64::from(chosen.pmf)) as f32;
-        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi);
+        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi) * self.placed.factor(-wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
@@ -242,7 +250,7 @@ impl Emitter for MeshLight {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        Some(self.placed.bounds)
+        Some(self.placed.shaped_bounds())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
@@ -257,6 +265,6 @@ impl Emitter for MeshLight {
             Some(triangles) => triangles.iter().map(|&i| power(i)).sum(),
             None => (0..emitters.mesh.triangles.len() as u32).map(power).sum(),
         };
-        (2.0 * PI * sum) as f32
+        (2.0 * PI * sum) as f32 * self.placed.mean_factor()
     }
 }

@@ -1,17 +1,21 @@
 //! Where the emitters of a shape stand, and what that makes of their bounds.
 
+use std::sync::Arc;
+
 use super::bounds::Asked;
-use super::{LightBounds, LightTree, Receiver};
-use crate::math::{Affine3A, Bounds, DMat3, DVec3, Mat3, Vec3, Vec3A, place_point};
+use super::{LightBounds, LightTree, Profile, Receiver};
+use crate::math::{Affine3A, Bounds, DMat3, DVec3, Mat3, Rgb, Vec3, Vec3A, place_point};
 
 /// A tree over the emitters of a shape, in the shape's space, placed in render space.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Placed {
     pub to_render: Affine3A,
     to_shape: Affine3A,
     /// Carries the normal of a plane to the shape's space.
     plane_to_shape: Mat3,
     pub bounds: LightBounds,
+    /// How emission varies with direction, without decay; `None` where the emitters alone say it.
+    pub profile: Option<Arc<Profile>>,
     /// Irradiance in render space per irradiance in the shape's space: 1 unless the scale is not the same
     /// along all axes.
     importance_scale: f32,
@@ -40,6 +44,7 @@ impl Placed {
             to_shape,
             plane_to_shape: m.transpose().as_mat3(),
             bounds,
+            profile: None,
             importance_scale: (area / uniform) as f32,
         })
     }
@@ -54,7 +59,27 @@ impl Placed {
 
     /// Unoccluded irradiance that the emitters of `tree` may bring to `at`.
     pub fn importance(&self, tree: &LightTree, at: &Receiver) -> f32 {
-        tree.weigh(&self.asked(at)).sum * self.importance_scale
+        let importance = tree.weigh(&self.asked(at)).sum * self.importance_scale;
+        match &self.profile {
+            None => importance,
+            Some(profile) if !profile.reaches(self.bounds.bounds, at.p) => 0.0,
+            Some(profile) => (importance * profile.peak().max_component()).min(f32::MAX),
+        }
+    }
+
+    /// The bounds with the profile.
+    pub fn shaped_bounds(&self) -> LightBounds {
+        self.profile.as_ref().map_or(self.bounds, |profile| profile.bound_shape(self.bounds))
+    }
+
+    /// Factor of what leaves an emitter along the unit direction `w`, render space.
+    pub fn factor(&self, w: Vec3) -> Rgb {
+        self.profile.as_ref().map_or(Rgb::WHITE, |profile| profile.factor(w, 1.0))
+    }
+
+    /// Mean of the factor over all directions, luminance.
+    pub fn mean_factor(&self) -> f32 {
+        self.profile.as_ref().map_or(1.0, |profile| profile.mean().luminance())
     }
 }
 

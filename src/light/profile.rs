@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use cone::{OffAxis, keeps_angles, stretched_half};
 
 use super::{LightBounds, Receiver};
-use crate::math::{DMat3, DVec3, Rgb, Vec3};
+use crate::math::{Bounds, DMat3, DVec3, Rgb, Vec3};
 
 pub use cone::Cone;
 pub use decay::{Decay, Falloff};
@@ -20,6 +20,12 @@ pub use ies::Ies;
 /// Cosine of the angle by which the light tree may be off at the rim of a cone: sines that come from
 /// the cosines of small angles in `f32` are that far from the truth.
 const RIM: f32 = 1.0 - 1e-5;
+
+/// Half angle in radians of the widest cone that tells where a shape shines better than its normals.
+const NARROW: f64 = PI / 3.0;
+
+/// Half angle in radians of the cone of normals that a flat shape has at most: its cosine is rounded down.
+const FLAT: f64 = 6e-3;
 
 /// Planes through the axis of what is not the same all around, in quadrature.
 const AZIMUTHS: usize = 96;
@@ -181,6 +187,31 @@ impl Profile {
             bounds.cos_emission = of.cos_emission.max(self.cos_half - 1e-5);
         }
         bounds
+    }
+
+    /// False where none of what leaves a shape within `bounds` can arrive at `p`.
+    pub fn reaches(&self, bounds: Bounds, p: Vec3) -> bool {
+        let from_center = (p - bounds.center()).as_dvec3();
+        let (dist, radius) = (from_center.length(), f64::from(bounds.radius()));
+        if dist <= radius {
+            return true;
+        }
+        // Directions to the point from all of the ball around the shape.
+        let off_axis = (from_center.dot(self.axis.as_dvec3()) / dist).clamp(-1.0, 1.0).acos();
+        off_axis - (radius / dist).asin() <= self.half + 1e-3
+    }
+
+    /// The bounds of a shape whose primitives have this profile, given those that it has without.
+    pub fn bound_shape(&self, of: LightBounds) -> LightBounds {
+        if self.half < NARROW {
+            // Tells more than the normals do.
+            return self.bound(LightBounds { cos_normals: -1.0, ..of });
+        }
+        let off = f64::from(of.axis.dot(self.axis).abs().min(1.0)).acos();
+        let normals = f64::from(of.cos_normals.clamp(-1.0, 1.0)).acos();
+        let back_is_dark = self.half + off + normals < FRAC_PI_2 + FLAT;
+        let axis = if of.axis.dot(self.axis) < 0.0 && back_is_dark { -of.axis } else { of.axis };
+        self.bound(LightBounds { axis, two_sided: of.two_sided && !back_is_dark, ..of })
     }
 
     /// Mean over the sphere of directions, over `azimuths` planes through the axis; one is for a light

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::placed::Placed;
 use super::tree::refined;
-use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Receiver};
+use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Profile, Receiver};
 use crate::math::{Affine3A, Bounds, DMat3, DVec3, Rgb, RoundPoint, Vec3, gamma, offset_ray_origin, place_point};
 use crate::shape::Rounds;
 
@@ -90,6 +90,14 @@ impl RoundLight {
         Some(Self { emitters, placed: Arc::new(placed), cofactors })
     }
 
+    /// The same with `profile`, without decay.
+    pub fn shaped(mut self, profile: Option<Arc<Profile>>) -> Self {
+        if profile.is_some() {
+            Arc::make_mut(&mut self.placed).profile = profile;
+        }
+        self
+    }
+
     /// How it emits.
     pub fn emission(&self) -> &dyn Emission {
         &*self.emitters.emission
@@ -119,7 +127,7 @@ impl Emitter for RoundLight {
         let wi = to_light / dist_squared.sqrt();
         let pdf = self.density(segment, &point) * f64::from(chosen.pmf) * dist_squared / ng.dot(wi).abs();
         let (wi, ng, pdf) = (wi.as_vec3(), ng.as_vec3(), pdf as f32);
-        let li = self.emitters.emission.radiance(segment, uv);
+        let li = self.emitters.emission.radiance(segment, uv) * self.placed.factor(-wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
@@ -140,7 +148,7 @@ impl Emitter for RoundLight {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        Some(self.placed.bounds)
+        Some(self.placed.shaped_bounds())
     }
 
     fn importance(&self, at: &Receiver) -> f32 {
@@ -155,6 +163,6 @@ impl Emitter for RoundLight {
             Some(segments) => segments.iter().map(|&i| power(i)).sum(),
             None => (0..emitters.rounds.len() as u32).map(power).sum(),
         };
-        (PI * scale * sum) as f32
+        (PI * scale * sum) as f32 * self.placed.mean_factor()
     }
 }

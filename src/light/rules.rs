@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::AnyEmitter;
+use super::{AnyEmitter, ShadowLook};
 
 /// Which kinds of ray see a light, and which kinds of scattering it lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,8 @@ pub struct Rules {
     pub seen: Seen,
     /// What stops it.
     pub shadow: Shadow,
+    /// How the shadows look; `None` where they are black and without end.
+    pub look: Option<ShadowLook>,
     /// For each class of receivers, whether it is lit; `None` where all are.
     pub receivers: Option<Arc<[bool]>>,
     /// Factors of what it lights by diffuse scattering, and by all other; `None` where both are 1.
@@ -59,7 +61,14 @@ impl Seen {
 
 impl Rules {
     /// A light without any rule.
-    pub const NONE: Self = Self { group: None, seen: Seen::ALL, shadow: Shadow::Cast, receivers: None, response: None };
+    pub const NONE: Self =
+        Self { group: None, seen: Seen::ALL, shadow: Shadow::Cast, look: None, receivers: None, response: None };
+
+    /// True where the light stops at whatever rays stop at: one that finds it counts it where it ends. Else, with
+    /// shadows of its own, it is counted where the ray begins.
+    pub fn stops_like_rays(&self) -> bool {
+        self.shadow == Shadow::Cast && self.look.is_none()
+    }
 
     /// True where the light reaches receivers of `class`.
     pub fn lights(&self, class: u16) -> bool {

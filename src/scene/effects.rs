@@ -4,7 +4,7 @@
 //! point: per pixel, per hit or per bounce.
 
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc};
+use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -39,9 +39,11 @@ pub struct Effects {
     pub lamps: bool,
     /// Some object emits, or is unlit.
     pub emissive: bool,
+    /// What some object emits is shaped by direction.
+    pub shaped_emission: bool,
     /// Some light can be found by rays that surfaces have sampled.
     pub found_by_rays: bool,
-    /// Some light casts no shadow, or not that of every object.
+    /// Some light casts no shadow, not that of every object, or one that is not black or ends.
     pub own_shadows: bool,
     /// The albedo of the first surface.
     pub color: bool,
@@ -81,6 +83,7 @@ impl Effects {
             absorption: any(&absorbs),
             lamps,
             emissive: emissive || unlit,
+            shaped_emission: emissive && scene.instances.iter().any(|instance| instance.shaped.is_some()),
             found_by_rays: lamps || emissive || in_background || unlit,
             own_shadows: scene.lights.iter().any(|light| has_own_shadow(&light.links))
                 || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
@@ -106,6 +109,7 @@ impl Effects {
             irradiance: passes.needs_irradiance(),
             lamps: true,
             emissive: true,
+            shaped_emission: true,
             found_by_rays: true,
             own_shadows: true,
             color: passes.needs_color() || passes.needs_denoising(),
@@ -118,7 +122,7 @@ impl Effects {
 }
 
 fn has_own_shadow(links: &LightLinks) -> bool {
-    !links.cast_shadow || links.blockers.is_some()
+    !links.cast_shadow || links.blockers.is_some() || links.shadow != ShadowDesc::default()
 }
 
 pub(super) fn emits(material: &MaterialDesc) -> bool {

@@ -99,6 +99,7 @@ mod tests {
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: LightLinks::default(),
+            shaped: None,
             holdout: false,
             catcher: false,
         };

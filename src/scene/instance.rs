@@ -1,6 +1,8 @@
 //! A shape placed in render space.
 
-use crate::light::Rules;
+use std::sync::Arc;
+
+use crate::light::{Profile, Rules};
 use crate::math::{Affine3A, Mat3A};
 use crate::shape::Placement;
 
@@ -74,6 +76,8 @@ pub struct Instance {
     pub receiver_class: u16,
     /// Rules of the light that it emits; `None` where it emits none.
     pub rules: Option<Box<Rules>>,
+    /// How what it emits varies with direction; `None` where its materials alone say it.
+    pub profile: Option<Arc<Profile>>,
     /// True where the camera sees a hole in the picture instead.
     pub holdout: bool,
     /// True where the camera sees nothing of it but the shadows of others on it.

@@ -341,7 +341,13 @@ impl Scene {
         let material = self.material(it);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.emission.as_ref(), &mut values);
-        let le = lookups.color(&material.emission);
+        let mut le = lookups.color(&material.emission);
+        if self.effects.shaped_emission
+            && !material.unlit
+            && let Some(profile) = &self.instances[it.instance as usize].profile
+        {
+            le *= profile.factor(it.wo, 1.0);
+        }
         match self.vertex_color(it) {
             Some([r, g, b, _]) if material.unlit => le * Rgb::new(r, g, b),
             _ if material.programs.is_some() => le.map(|c| c.max(0.0)),

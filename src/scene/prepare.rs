@@ -13,6 +13,7 @@ mod lights;
 mod links;
 mod materials;
 mod mend;
+mod shadow_look;
 mod shaping;
 mod suns;
 mod texels;

@@ -2,7 +2,7 @@
 
 use super::{Interaction, PathState, Scene, mask};
 use crate::bvh::Hit;
-use crate::light::{Emitter, Light, Shadow};
+use crate::light::{Emitter, Light, Rules, Shadow, ShadowLook};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
 
 /// Surfaces that one ray may pass unscattered before it counts as stopped.
@@ -30,35 +30,59 @@ impl Scene {
         self.bvh.closest_hit(ray, mask)
     }
 
+    /// Share of the light of an emitter with `rules` that arrives where `ray` begins, from as far as it goes.
+    pub fn arriving(&self, ray: &Ray, rules: &Rules) -> Rgb {
+        match &rules.look {
+            None => self.transmittance(ray, rules.shadow),
+            Some(look) => self.arriving_beside(ray, rules.shadow, look),
+        }
+    }
+
     /// Share of light that passes along `ray`: black behind an opaque surface, the product of what
     /// passes through cut-outs and blends; only what `shadow` names stops it.
     pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> Rgb {
-        let (opaque, cutout) = match shadow {
-            Shadow::Cast => (mask::SHADOW, mask::SHADOW_CUTOUT),
-            Shadow::Off => return Rgb::WHITE,
-            Shadow::Only(classes) => (mask::linked(classes), mask::linked_cutout(classes)),
-        };
+        let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         if self.bvh.any_hit(ray, opaque) {
             return Rgb::BLACK;
         }
-        if !self.effects.cutouts {
-            return Rgb::WHITE;
-        }
+        if self.effects.cutouts { self.passed(ray, cutout, |_| 1.0) } else { Rgb::WHITE }
+    }
+
+    /// [`Self::arriving`] beside shadows that look as `look` says.
+    // Out of line, so that other lights have no part in it.
+    #[cold]
+    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook) -> Rgb {
+        let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
+        let length = ray.d.length();
+        let ray = Ray { t_max: ray.t_max.min(look.distance() / length), ..*ray };
+        look.arriving(match look.fades() {
+            // Which opaque blocker is the nearest matters.
+            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length)),
+            false => self.transmittance(&ray, shadow),
+        })
+    }
+
+    /// What passes the surfaces that `mask` sees, up to the first opaque one; one at `t` along `ray` counts for the
+    /// share `strength(t)`.
+    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32) -> Rgb {
         let mut left = Rgb::WHITE;
-        let mut ray = *ray;
+        let (mut rest, mut t) = (*ray, 0.0);
         for _ in 0..MAX_TRANSPARENT {
-            let Some(hit) = self.closest_hit(&ray, cutout) else { return left };
-            let mut it = self.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
+            let Some(hit) = self.closest_hit(&rest, mask) else { return left };
+            let mut it = self.interaction(&rest, &hit, RayCone { width: 0.0, spread: 0.0 });
             if self.effects.light_path {
                 it.path = PathState { length: hit.t, ..PathState::SHADOW };
             }
-            left *= self.coverage(&it).passes;
-            if left.is_black() {
+            t += hit.t;
+            let passes = self.coverage(&it).passes;
+            left *= Rgb::WHITE.lerp(passes, strength(t));
+            if passes.is_black() || left.is_black() {
                 return left;
             }
-            ray = it.continued(&ray, hit.t);
+            rest = it.continued(&rest, hit.t);
         }
-        Rgb::BLACK
+        // Too many layers stop like an opaque one.
+        left * (1.0 - strength(t))
     }
 
     /// True where a shadow catcher is in the way.
@@ -72,6 +96,15 @@ impl Scene {
             .background()
             .map(move |(i, light)| (i, light, light.emitter.le(d, None)))
             .filter(|(.., le)| !le.is_black())
+    }
+}
+
+/// Masks of what stops a light whole and of what must be asked; `None` where nothing does.
+fn blockers(shadow: Shadow) -> Option<[u64; 2]> {
+    match shadow {
+        Shadow::Cast => Some([mask::SHADOW, mask::SHADOW_CUTOUT]),
+        Shadow::Off => None,
+        Shadow::Only(classes) => Some([mask::linked(classes), mask::linked_cutout(classes)]),
     }
 }
 

@@ -3,9 +3,14 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use penumbra::light::{Cone, Decay, Emitter, Falloff, Ies, Point, Profile, Receiver, Shaping, Sphere};
-use penumbra::math::{DMat3, DVec3, Rgb, Vec3};
+use penumbra::light::{
+    AnyEmitter, Cone, Decay, Emitter, Falloff, Ies, MeshEmitters, MeshLight, Point, Profile, Receiver, RoundEmitters,
+    RoundLight, Shaping, Sphere,
+};
+use penumbra::math::{Affine3A, DMat3, DVec3, Rgb, Vec3};
+use penumbra::shape::{Mesh, Rounds};
 
+use crate::mesh::Constant;
 use crate::quadrature::midpoints;
 
 fn turned() -> DMat3 {
@@ -101,6 +106,77 @@ fn a_light_is_never_without_importance_where_it_shines() {
         }
         // And it does tell where there is none.
         assert!(half > 1.5 || dark > 1000, "{name}: {dark}");
+    }
+}
+
+/// Sheets across and along the axis of the profiles, a cube's corner and a ball.
+fn shapes() -> Vec<(&'static str, AnyEmitter)> {
+    let emission = || Arc::new(Constant(Rgb::WHITE));
+    let mesh = |corners: &[[f64; 3]], triangles: &[[u32; 3]]| {
+        let points = corners.iter().map(|&p| (turned() * DVec3::from(p)).as_vec3()).collect();
+        let mesh = Mesh { points, triangles: triangles.to_vec(), ..Mesh::default() };
+        let emitters = MeshEmitters::new(Arc::new(mesh), emission()).unwrap();
+        MeshLight::new(Arc::new(emitters), Affine3A::IDENTITY).unwrap().into()
+    };
+    let sheet = [[-0.3, -0.2, 0.0], [0.3, -0.2, 0.0], [0.3, 0.2, 0.0], [-0.3, 0.2, 0.0]];
+    let upright = sheet.map(|[x, y, z]| [x, z, y]);
+    let corner = [[0.0; 3], [0.3, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 0.3]];
+    let ball = Rounds {
+        center: DVec3::ZERO,
+        balls: vec![[0.0, 0.0, 0.0, 0.3]],
+        segments: None,
+        uvs: Vec::new(),
+        colors: None,
+        material_slots: None,
+    };
+    let ball = RoundEmitters::new(Arc::new(ball), emission()).unwrap();
+    vec![
+        ("across", mesh(&sheet, &[[0, 1, 2], [0, 2, 3]])),
+        ("turned around", mesh(&sheet, &[[0, 2, 1], [0, 3, 2]])),
+        ("along", mesh(&upright, &[[0, 1, 2], [0, 2, 3]])),
+        ("corner", mesh(&corner, &[[0, 1, 2], [0, 2, 3], [0, 3, 1]])),
+        ("ball", RoundLight::new(Arc::new(ball), Affine3A::IDENTITY).unwrap().into()),
+    ]
+}
+
+/// The same of emissive shapes, for the choice among few lights and for the tree over many.
+#[test]
+fn a_shape_is_never_without_importance_where_it_shines() {
+    let receivers: Vec<Vec3> = directions(400).collect();
+    let half_space = Shaping { cone: Some(Cone::soft(0.5 * PI, 0.0)), ..Shaping::default() };
+    let half_space = ("half space", Profile::new(turned(), half_space, Decay::PHYSICAL));
+    for (name, profile) in profiles().into_iter().chain([half_space]) {
+        let (axis, half) = profile.cone();
+        let peak = profile.peak();
+        let profile = Some(Arc::new(profile));
+        for (shape, light) in shapes() {
+            let light: AnyEmitter = match light {
+                AnyEmitter::MeshLight(light) => light.shaped(profile.clone()).into(),
+                AnyEmitter::RoundLight(light) => light.shaped(profile.clone()).into(),
+                other => other,
+            };
+            let bounds = light.bounds().unwrap();
+            let mut dark = [0, 0];
+            for (w, dist) in receivers.iter().flat_map(|&w| [(w, 0.5), (w, 30.0), ((axis + w * 0.1).normalize(), 3.0)])
+            {
+                let at = Receiver::everywhere(w * dist);
+                let importance = [light.importance(&at), bounds.importance(&at)];
+                let brings = directions(64)
+                    .filter_map(|u| light.sample_li(&at, 0.0, [0.5 + 0.499 * u.x, 0.5 + 0.499 * u.y]))
+                    .inspect(|sample| {
+                        assert!(sample.li.zip(peak, |l, p| l - p).max_component() <= 1e-6 * peak.max_component())
+                    })
+                    .any(|sample| sample.li.max_component() > 0.0);
+                assert!(!brings || importance.iter().all(|i| *i > 0.0), "{name}, {shape} at {w}: {importance:?}");
+                dark[0] += u32::from(importance[0] == 0.0);
+                dark[1] += u32::from(importance[1] == 0.0);
+            }
+            assert!(half > 0.9 || dark.iter().all(|dark| *dark > 100), "{name}, {shape}: {dark:?}");
+            // The tree, too, knows that the back of a sheet is dark.
+            if name == "half space" && (shape == "across" || shape == "turned around") {
+                assert!(dark[1] > 100, "{shape}: {dark:?}");
+            }
+        }
     }
 }
 

@@ -69,6 +69,7 @@ impl Builder {
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: LightLinks::default(),
+            shaped: None,
             holdout: false,
             catcher: false,
         });

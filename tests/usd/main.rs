@@ -13,6 +13,7 @@ mod mutation;
 mod primvars;
 #[path = "../support/rng.rs"]
 mod rng;
+mod shape_lights;
 mod shown;
 mod skel;
 mod times;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-use penumbra::desc::{ConeDesc, DecayDesc, DecayLaw, LightDesc, LightKind, LinkSet, SceneDesc, Visibility};
+use penumbra::desc::{ConeDesc, DecayDesc, DecayLaw, LightDesc, LightKind, LinkSet, SceneDesc, ShadowDesc, Visibility};
 use serde_json::{Map, Value, json};
 
 use super::numbers;
@@ -114,6 +114,17 @@ fn rules(light: &LightDesc, scene: &SceneDesc, fields: &mut Map<String, Value>) 
     if !light.links.cast_shadow {
         set("cast_shadow", json!(false));
     }
+    let ShadowDesc { color, distance, falloff, gamma } = light.links.shadow;
+    if color != [0.0; 3] {
+        set("shadow_color", json!(color));
+    }
+    if distance.is_finite() {
+        set("shadow_distance_m", json!(distance));
+    }
+    if falloff != 0.0 {
+        set("shadow_falloff_m", json!(falloff));
+        set("shadow_falloff_gamma", json!(gamma));
+    }
     for (key, links) in [("receivers", &light.links.receivers), ("blockers", &light.links.blockers)] {
         if let Some(links) = links {
             set(key, link_set(links, scene));
@@ -177,6 +188,10 @@ pub fn line(light: &Value) -> String {
     say("range_m", &|v| format!("range {} m", number(v)));
     say("group", &|v| format!("group {v}"));
     say("cast_shadow", &|_| "casts no shadow".into());
+    say("shadow_color", &|v| format!("shadows of color {}", list(v, " ")));
+    say("shadow_distance_m", &|v| format!("shadows within {} m", number(v)));
+    say("shadow_falloff_m", &|v| format!("fading over {} m", number(v)));
+    say("shadow_falloff_gamma", &|v| format!("falloff gamma {}", number(v)));
     say("receivers", &|v| format!("lights {}", objects(v)));
     say("blockers", &|v| format!("stopped by {}", objects(v)));
     for (ray, seen) in light["visibility"].as_object().into_iter().flatten() {

@@ -6,7 +6,7 @@
 
 use penumbra::desc::{
     Attribute, CameraDesc, ConeDesc, DecayLaw, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
-    Motion, ProjectionDesc, RoundsDesc, SceneDesc, ShapeRef, Visibility,
+    Motion, ProjectionDesc, RoundsDesc, SceneDesc, ShapeRef, ShapingDesc, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DMat4};
@@ -106,6 +106,10 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
         "color": instance.color,
         "visibility": visibility(instance.visibility),
         "links": links(&instance.links, scene),
+        "shaped": instance.shaped.as_ref().map(|shaped| json!({
+            "matrix": matrix(&shaped.transform),
+            "shaping": shaping(&shaped.shaping, scene),
+        })),
     })
 }
 
@@ -122,19 +126,37 @@ fn links(links: &LightLinks, scene: &SceneDesc) -> Value {
     json!({
         "group": links.group.as_deref(),
         "cast_shadow": links.cast_shadow,
+        "shadow": {
+            "color": links.shadow.color,
+            "distance": links.shadow.distance,
+            "falloff": links.shadow.falloff,
+            "gamma": links.shadow.gamma,
+        },
         "response": links.response,
         "receivers": links.receivers.as_ref().map(set),
         "blockers": links.blockers.as_ref().map(set),
     })
 }
 
-fn light(light: &LightDesc, scene: &SceneDesc) -> Value {
-    let shaping = &light.shaping;
+fn shaping(shaping: &ShapingDesc, scene: &SceneDesc) -> Value {
     let cone = |cone: ConeDesc| match cone {
         ConeDesc::Ramp { inner, outer } => json!({ "kind": "ramp", "inner": inner, "outer": outer }),
         ConeDesc::Blend { angle, blend } => json!({ "kind": "blend", "angle": angle, "blend": blend }),
         ConeDesc::Soft { angle, softness } => json!({ "kind": "soft", "angle": angle, "softness": softness }),
     };
+    json!({
+        "cone": shaping.cone.map(cone),
+        "focus": shaping.focus,
+        "focus_tint": shaping.focus_tint,
+        "ies": shaping.ies.map(|ies| json!({
+            "profile": &*scene.ies[ies.profile as usize].name,
+            "angle_scale": ies.angle_scale,
+            "keep_power": ies.keep_power,
+        })),
+    })
+}
+
+fn light(light: &LightDesc, scene: &SceneDesc) -> Value {
     let law = match light.decay.law {
         DecayLaw::Constant => json!("constant"),
         DecayLaw::Linear => json!("linear"),
@@ -147,16 +169,7 @@ fn light(light: &LightDesc, scene: &SceneDesc) -> Value {
         "place": node(&light.place),
         "matrix": matrix(&light.transform),
         "kind": kind(light.kind, scene),
-        "shaping": {
-            "cone": shaping.cone.map(cone),
-            "focus": shaping.focus,
-            "focus_tint": shaping.focus_tint,
-            "ies": shaping.ies.map(|ies| json!({
-                "profile": &*scene.ies[ies.profile as usize].name,
-                "angle_scale": ies.angle_scale,
-                "keep_power": ies.keep_power,
-            })),
-        },
+        "shaping": shaping(&light.shaping, scene),
         "decay": { "law": law, "smooth": light.decay.smooth, "range": range },
         "visibility": visibility(light.visibility),
         "links": links(&light.links, scene),

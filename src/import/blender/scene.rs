@@ -242,6 +242,7 @@ impl BlenderScene {
                 color: None,
                 visibility: data.visibility.into(),
                 links: LightLinks::default(),
+                shaped: None,
                 holdout: data.holdout,
                 catcher: data.shadow_catcher,
                 info: ObjectInfo {

@@ -331,6 +331,7 @@ impl Builder<'_> {
                     info: ObjectInfo::default(),
                     visibility: penumbra.visible(Visibility::ALL),
                     links: penumbra.links(),
+                    shaped: None,
                     holdout: false,
                     catcher: false,
                 });

@@ -8,7 +8,7 @@ use openusd::sdf::Path;
 
 use super::gather::Found;
 use super::inherit::moving;
-use super::light::{self, ShapeLight};
+use super::light::{self, GeometryLight, Profiles, ShapeLight, Shaped};
 use super::shape::Built;
 use super::shapes::{Dressed, Shapes};
 use super::stage::Reading;
@@ -16,13 +16,38 @@ use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef, Vis
 use crate::error::Place;
 use crate::math::DAffine3;
 
+/// What makes shapes shine beside their looks.
+#[derive(Default)]
+pub(super) struct ShapeLights {
+    /// By the shape that each of them names.
+    pub geometry: HashMap<Path, GeometryLight>,
+    /// By the prim whose properties say it.
+    shaping: HashMap<Path, Option<Shaped>>,
+}
+
+impl ShapeLights {
+    /// Keeps how the shape at `path` shines, a light with the properties of `prim`.
+    pub fn read_shaping(
+        &mut self,
+        reading: &Reading<'_>,
+        light: &ShapeLight,
+        prim: &Path,
+        path: &Path,
+        profiles: &mut Profiles,
+    ) {
+        if !self.shaping.contains_key(prim) {
+            self.shaping.insert(prim.clone(), light.shaping(reading, prim, path, profiles));
+        }
+    }
+}
+
 /// Adds the shapes of `shapes`, and an instance for everything that was found and shows one.
 pub(super) fn place(
     reading: &Reading<'_>,
     found: &[Found],
     times: &[f64],
     shapes: Shapes,
-    geometry: &HashMap<Path, ShapeLight>,
+    shape_lights: &ShapeLights,
     scene: &mut SceneDesc,
 ) {
     let mut refs: Vec<Option<ShapeRef>> = Vec::new();
@@ -48,9 +73,13 @@ pub(super) fn place(
             continue;
         }
         let own = found.look.shape.as_ref().and_then(|shape| shape.light.as_ref());
-        let light = own.or_else(|| geometry.get(&found.path));
+        let (light, shaped) = match (own, shape_lights.geometry.get(&found.path)) {
+            (Some(own), _) => (Some(own), shape_lights.shaping.get(&found.look.prim).and_then(Option::as_ref)),
+            (None, Some(geometry)) => (Some(&geometry.light), geometry.shaped.as_ref()),
+            (None, None) => (None, None),
+        };
         let materials = match light {
-            Some(light) => shine(reading, found, dressed, light, *shape, &mut shining, scene),
+            Some(light) => shine(reading, found, dressed, (light, shaped), *shape, &mut shining, scene),
             None => dressed.materials.clone(),
         };
         let (name, place, asset) = names.of(reading, found);
@@ -72,6 +101,7 @@ pub(super) fn place(
             info: ObjectInfo::default(),
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
+            shaped: shaped.map(|shaped| shaped.placed(&found.pose.world).into()),
             holdout: false,
             catcher: false,
         });
@@ -83,7 +113,7 @@ fn shine(
     reading: &Reading<'_>,
     found: &Found,
     dressed: &Dressed,
-    light: &ShapeLight,
+    (light, shaped): (&ShapeLight, Option<&Shaped>),
     shape: ShapeRef,
     known: &mut HashMap<(*const Dressed, *const ShapeLight), Vec<Option<u32>>>,
     scene: &mut SceneDesc,
@@ -96,7 +126,7 @@ fn shine(
     let mut materials = Vec::new();
     for slot in &dressed.materials {
         let bound = slot.and_then(|slot| scene.materials.get(slot as usize));
-        let material = light.material(bound, || {
+        let material = light.material(bound, shaped.map_or(1.0, |shaped| shaped.factor), || {
             sized.set(true);
             light::area(reading, shape, scene, &found.pose.world)
         });

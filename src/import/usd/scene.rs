@@ -1,6 +1,6 @@
 //! Puts the scene together.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use openusd::sdf::Path;
@@ -8,7 +8,8 @@ use openusd::sdf::Path;
 use super::gather::{Found, Haul};
 use super::images::Images;
 use super::inherit::moving;
-use super::light::{Profiles, ShapeLight};
+use super::instances::ShapeLights;
+use super::light::Profiles;
 use super::material::Materials;
 use super::stage::Reading;
 use super::walk::Placed;
@@ -26,13 +27,13 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     };
     let haul = gather(reading);
     let mut images = Images::default();
-    let geometry = lights_and_cameras(reading, &haul, &mut images, &mut scene);
+    let shape_lights = lights_and_cameras(reading, &haul, &mut images, &mut scene);
     let mut materials = Materials::new(reading, images);
     materials.preload(haul.found.iter().flat_map(|found| found.look.materials()).collect::<BTreeSet<_>>());
     let Haul { found, shapes, times } = haul;
     let shapes = shapes::build(reading, &found, shapes, &mut materials);
     materials.finish(&mut scene);
-    instances::place(reading, &found, &times, shapes, &geometry, &mut scene);
+    instances::place(reading, &found, &times, shapes, &shape_lights, &mut scene);
     if found.iter().any(|found| found.look.linked) {
         light::link(reading, &mut scene);
     }
@@ -92,22 +93,20 @@ fn offered(reading: &Reading<'_>) -> Vec<String> {
     offered
 }
 
-/// Adds lamps and cameras; gives the shapes that GeometryLights make shine, by their path.
-fn lights_and_cameras(
-    reading: &Reading<'_>,
-    haul: &Haul,
-    images: &mut Images,
-    scene: &mut SceneDesc,
-) -> HashMap<Path, ShapeLight> {
+/// Adds lamps and cameras; gives the shapes that shine by what is said elsewhere than in their look.
+fn lights_and_cameras(reading: &Reading<'_>, haul: &Haul, images: &mut Images, scene: &mut SceneDesc) -> ShapeLights {
     let mut profiles = Profiles::default();
-    let mut geometry = HashMap::new();
+    let mut shapes = ShapeLights::default();
     let mut lost = BTreeSet::new();
     let placed: Vec<Placed> = haul.found.iter().filter_map(|found| placed(reading, haul, found)).collect();
     let worlds = light::worlds(reading, &placed, images);
     for placed in &placed {
         match &*placed.kind {
             "Camera" | stamp::KIND => add_camera(reading, placed, scene),
-            "GeometryLight" => geometry.extend(light::geometry_light(reading, placed)),
+            "GeometryLight" => {
+                let found = light::geometry_light(reading, placed, &mut profiles);
+                shapes.geometry.extend(found.map(|found| (found.target.clone(), found)));
+            }
             _ if worlds.replace(&placed.path) => {}
             _ => {
                 lost.extend(light::lost(reading, placed));
@@ -127,8 +126,14 @@ fn lights_and_cameras(
         );
         reading.warnings.borrow_mut().push(&reading.place, what);
     }
+    for found in &haul.found {
+        let look = &found.look;
+        if let Some(light) = look.shape.as_ref().and_then(|shape| shape.light.as_ref()) {
+            shapes.read_shaping(reading, light, &look.prim, &found.path, &mut profiles);
+        }
+    }
     scene.ies = profiles.list;
-    geometry
+    shapes
 }
 
 /// What is read on its own of `found`.

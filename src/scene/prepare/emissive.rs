@@ -252,9 +252,12 @@ impl<'a> Emissive<'a> {
                 Shape::Rounds(rounds) => RoundEmitters::new(rounds, emission).map(|e| Emitters::Rounds(Arc::new(e))),
             }
         });
+        let (to_render, profile) = (instance.object_to_render, instance.profile.clone());
         match emitters.clone()? {
-            Emitters::Mesh(emitters) => MeshLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
-            Emitters::Rounds(emitters) => RoundLight::new(emitters, instance.object_to_render).map(AnyEmitter::from),
+            Emitters::Mesh(emitters) => MeshLight::new(emitters, to_render).map(|light| light.shaped(profile).into()),
+            Emitters::Rounds(emitters) => {
+                RoundLight::new(emitters, to_render).map(|light| light.shaped(profile).into())
+            }
         }
     }
 }

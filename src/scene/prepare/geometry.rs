@@ -158,6 +158,7 @@ fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_
         light: None,
         receiver_class: 0,
         rules: None,
+        profile: None,
         holdout: desc.holdout,
         catcher: desc.catcher,
     })

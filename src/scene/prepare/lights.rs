@@ -6,10 +6,11 @@ use super::cache::Cache;
 use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
 use super::links::Links;
-use super::{dome, lamp, suns};
+use super::mend::Mended;
+use super::{dome, lamp, shadow_look, shaping, suns};
 use crate::desc::{LightDesc, LightKind, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
-use crate::light::{Light, Rules, Seen};
+use crate::light::{Light, Rules, Seen, ShadowLook};
 
 /// Factors of a light's light; what is no factor counts as 0.
 fn response(factors: [f64; 2]) -> Option<[f32; 2]> {
@@ -29,7 +30,7 @@ pub fn prepare(
     cache: &mut Cache,
     warnings: &mut Warnings,
 ) -> Vec<Light> {
-    let rules = |of: &LightLinks, visibility: Visibility| Rules {
+    let rules = |of: &LightLinks, look: Option<ShadowLook>, visibility: Visibility| Rules {
         group: group(of, groups),
         seen: Seen {
             camera: visibility.camera,
@@ -38,6 +39,7 @@ pub fn prepare(
             transmission: visibility.transmission,
         },
         shadow: links.shadow(of),
+        look,
         receivers: links.receivers(of),
         response: response(of.response),
     };
@@ -47,13 +49,16 @@ pub fn prepare(
             LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared, cache).map(Into::into),
             _ => lamp::prepare(desc, light, shared.origin, warnings),
         };
+        let mut mended = Mended::default();
+        let look = shadow_look::prepare(&light.links, &mut mended);
+        mended.tell(light, false, warnings);
+        let rules = rules(&light.links, look, light.visibility);
         if let LightKind::ShadedDome { shader } = light.kind {
-            let rules = rules(&light.links, light.visibility);
             let suns = suns::prepare(&desc.dome_shaders[shader as usize], light, warnings);
             lights.extend(suns.into_iter().map(|sun| Light { emitter: sun.into(), rules: rules.clone() }));
         }
         if let Some(emitter) = emitter {
-            lights.push(Light { emitter, rules: rules(&light.links, light.visibility) });
+            lights.push(Light { emitter, rules });
         }
     }
     let materials = shared.materials;
@@ -63,9 +68,17 @@ pub fn prepare(
         if !instance.materials.iter().any(|&m| materials[m as usize].emits()) {
             continue;
         }
-        let rules = rules(&of.links, of.visibility);
+        let mut mended = Mended::default();
+        let look = shadow_look::prepare(&of.links, &mut mended);
+        mended.tell_at(&of.place, warnings);
+        let rules = rules(&of.links, look, of.visibility);
         instance.rules = Some(Box::new(rules.clone()));
         let shape = &geometry.shapes[instance.shape as usize];
+        let (profile, shines) = shaping::of_instance(desc, of, warnings);
+        instance.profile = profile;
+        if !shines {
+            continue;
+        }
         if let Some(emitter) = emissive.light(instance, index as u32, shape) {
             instance.light = Some(lights.len() as u32);
             lights.push(Light { emitter, rules });

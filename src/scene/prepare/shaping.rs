@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::lamp::proportions;
+use super::lamp::{axes, proportions};
 use super::mend::Mended;
-use crate::desc::{ConeDesc, DecayDesc, DecayLaw, IesRef, LightDesc, SceneDesc};
+use crate::desc::{ConeDesc, DecayDesc, DecayLaw, IesRef, InstanceDesc, LightDesc, LightKind, SceneDesc};
+use crate::error::Warnings;
 use crate::light::{Cone, Decay, Falloff, Ies, Profile, Shaping};
 use crate::math::DMat3;
 
@@ -15,6 +16,33 @@ const SHARPEST_FOCUS: f64 = 1e6;
 /// The profile of `light`, whose orthonormal axes in render space are `axes`: `Some(None)` where it has
 /// neither shaping nor decay, `None` where they leave no light.
 pub fn profile(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -> Option<Option<Arc<Profile>>> {
+    let profile = made(desc, light, axes, mended);
+    if profile.as_ref().is_some_and(|profile| profile.peak().is_black()) {
+        mended.note("its shaping leaves no light");
+        return None;
+    }
+    Some(profile)
+}
+
+/// The profile of what `instance` emits, and whether it leaves any light; bad numbers are told.
+pub fn of_instance(desc: &SceneDesc, instance: &InstanceDesc, warnings: &mut Warnings) -> (Option<Arc<Profile>>, bool) {
+    let Some(shaped) = &instance.shaped else { return (None, true) };
+    // As that of a lamp which stands there.
+    let point = LightKind::Point { intensity: [1.0; 3] };
+    let lamp = LightDesc::new(instance.name.clone(), instance.place.clone(), shaped.transform, point);
+    let lamp = LightDesc { shaping: shaped.shaping, ..lamp };
+    let mut mended = Mended::default();
+    let axes = axes(&lamp, &mut mended);
+    let profile = made(desc, &lamp, axes, &mut mended);
+    let shines = profile.as_ref().is_none_or(|profile| !profile.peak().is_black());
+    if !shines {
+        mended.note("its shaping leaves no light");
+    }
+    mended.tell(&lamp, false, warnings);
+    (profile, shines)
+}
+
+fn made(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -> Option<Arc<Profile>> {
     let decay = decay(light.decay, mended);
     let of = &light.shaping;
     let matrix = light.transform.matrix3;
@@ -27,14 +55,9 @@ pub fn profile(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Me
         ies: of.ies.and_then(|ies| self::ies(desc, ies, mended)),
     };
     if shaping.cone.is_none() && focus == 0.0 && shaping.ies.is_none() && decay == Decay::PHYSICAL {
-        return Some(None);
-    }
-    let profile = Profile::new(axes, shaping, decay);
-    if profile.peak().is_black() {
-        mended.note("its shaping leaves no light");
         return None;
     }
-    Some(Some(Arc::new(profile)))
+    Some(Arc::new(Profile::new(axes, shaping, decay)))
 }
 
 fn cone(cone: ConeDesc, mended: &mut Mended) -> Cone {

@@ -313,9 +313,6 @@ mod tests {
             def PluginLight "Plug" {}
             def PortalLight "Door" {}
             def RectLight "Odd" (prepend apiSchemas = ["ShadowAPI"]) {
-                color3f inputs:shadow:color = (1, 0, 0)
-                float inputs:shadow:distance = 3
-                float inputs:shadow:falloff = 1
                 bool inputs:shadow:enable = 0
                 rel light:filters = </Line>
                 float inputs:radius.connect = </Line.inputs:radius>
@@ -335,9 +332,6 @@ mod tests {
             "/Line: treatAsLine",
             "/Plug: lights that need a plugin",
             "/Door: portals",
-            "/Odd: inputs:shadow:color",
-            "/Odd: inputs:shadow:distance",
-            "/Odd: inputs:shadow:falloff",
             "/Odd: light filters",
             "/Odd: inputs:intensity is connected",
         ] {

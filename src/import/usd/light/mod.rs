@@ -18,7 +18,7 @@ mod stamped;
 pub(super) use blender::lost;
 pub(super) use ies::Profiles;
 pub(super) use links::link;
-pub(super) use shape_light::{ShapeLight, area, geometry_light};
+pub(super) use shape_light::{GeometryLight, ShapeLight, Shaped, area, geometry_light};
 pub(super) use stamped::worlds;
 
 use super::images::Images;

@@ -6,8 +6,11 @@ use openusd::usd::Prim;
 use super::super::stage::Reading;
 use super::super::values::Values;
 use super::super::walk::Placed;
-use super::{color, rules};
-use crate::desc::{ColorInput, LightLinks, MaterialDesc, MeshDesc, RoundsDesc, ScalarInput, SceneDesc, ShapeRef};
+use super::{Profiles, color, rules, shaping};
+use crate::desc::{
+    ColorInput, LightLinks, MaterialDesc, MeshDesc, RoundsDesc, ScalarInput, SceneDesc, ShapeRef, ShapedDesc,
+    ShapingDesc,
+};
 use crate::error::Place;
 use crate::math::{DAffine3, DVec3, RoundCone};
 
@@ -30,6 +33,8 @@ pub(in super::super) struct ShapeLight {
     /// True where it is divided by the area.
     normalize: bool,
     sync: Sync,
+    /// True where ShapingAPI says something.
+    is_shaped: bool,
     /// Where it was authored.
     place: Place,
     /// Its rules, but for the links that [`link`](super::link) fills.
@@ -61,24 +66,38 @@ impl ShapeLight {
     }
 
     fn new(values: &Values<'_>, sync: Sync) -> Self {
-        if values.has_api("ShapingAPI") {
-            values.warn("ShapingAPI of a shape that is a light is not rendered");
-        }
         Self {
             emission: color::emission(values),
             normalize: values.flag("inputs:normalize").unwrap_or(false),
             sync,
+            is_shaped: values.has_api("ShapingAPI"),
             place: values.reading.place_of(values.path),
             links: rules::links(values),
         }
     }
 
+    /// How the light is shaped whose properties are those of `prim`, told as that of `path`.
+    pub fn shaping(
+        &self,
+        reading: &Reading<'_>,
+        prim: &sdf::Path,
+        path: &sdf::Path,
+        profiles: &mut Profiles,
+    ) -> Option<Shaped> {
+        if !self.is_shaped {
+            return None;
+        }
+        let prim = reading.stage.prim(prim).ok()?;
+        Shaped::of(&Values { reading, prim: &prim, path }, profiles)
+    }
+
     /// The material that makes a shape with the material `bound` this light. `area` is that of the shape in
-    /// the world in square units of the stage (see [`area`]); it is asked for only where it matters.
+    /// the world in square units of the stage (see [`area`]); it is asked for only where it matters. The
+    /// emission is `factor` times that of the light (see [`Shaped`]).
     ///
     /// All rays see what lights: UsdLux would show the glow of the material alone to the camera.
-    pub fn material(&self, bound: Option<&MaterialDesc>, area: impl FnOnce() -> f64) -> MaterialDesc {
-        let per_area = if self.normalize { 1.0 / area() } else { 1.0 };
+    pub fn material(&self, bound: Option<&MaterialDesc>, factor: f64, area: impl FnOnce() -> f64) -> MaterialDesc {
+        let per_area = factor * if self.normalize { 1.0 / area() } else { 1.0 };
         let radiance = self.emission.map(|e| e * per_area).map(|e| if e.is_finite() { e } else { 0.0 });
         let light = ColorInput::constant(radiance);
         let glows = |m: &&MaterialDesc| m.emission_strength != 0.0 && m.emission.factor != [0.0; 3];
@@ -105,14 +124,55 @@ impl ShapeLight {
     }
 }
 
-/// The shape that the GeometryLight at `placed` makes shine, and how.
-pub(in super::super) fn geometry_light(reading: &Reading<'_>, placed: &Placed) -> Option<(sdf::Path, ShapeLight)> {
+/// How the emission of a shape varies with direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) struct Shaped {
+    shaping: ShapingDesc,
+    /// What its measured distribution multiplies emission by.
+    pub factor: f64,
+    /// Where the light stands; `None` for where the shape does.
+    world: Option<DAffine3>,
+}
+
+impl Shaped {
+    fn of(values: &Values<'_>, profiles: &mut Profiles) -> Option<Self> {
+        let (shaping, factor) = shaping::of(values, false, profiles);
+        let shaped = shaping != ShapingDesc::default() || factor != 1.0;
+        shaped.then_some(Self { shaping, factor, world: None })
+    }
+
+    /// Of a shape placed by `world`.
+    pub fn placed(&self, world: &DAffine3) -> ShapedDesc {
+        ShapedDesc { shaping: self.shaping, transform: self.world.unwrap_or(*world) }
+    }
+}
+
+/// The shape that a GeometryLight makes shine, and how.
+#[derive(Debug)]
+pub(in super::super) struct GeometryLight {
+    /// The shape.
+    pub target: sdf::Path,
+    /// What it is then.
+    pub light: ShapeLight,
+    /// Along the axis of the light, not of the shape.
+    pub shaped: Option<Shaped>,
+}
+
+/// The GeometryLight at `placed`.
+pub(in super::super) fn geometry_light(
+    reading: &Reading<'_>,
+    placed: &Placed,
+    profiles: &mut Profiles,
+) -> Option<GeometryLight> {
     let values = Values { reading, prim: &placed.prim, path: &placed.path };
     let Some(target) = values.targets("geometry").into_iter().next() else {
         values.warn("a GeometryLight without geometry: it is left out");
         return None;
     };
-    Some((target, ShapeLight::new(&values, Sync::NoResponse)))
+    let light = ShapeLight::new(&values, Sync::NoResponse);
+    let shaped = if light.is_shaped { Shaped::of(&values, profiles) } else { None };
+    let shaped = shaped.map(|shaped| Shaped { world: Some(placed.world), ..shaped });
+    Some(GeometryLight { target, light, shaped })
 }
 
 /// Surface of `shape` where `world` puts it, in square units of the stage.
@@ -188,23 +248,25 @@ mod tests {
         );
         let light =
             |path: &str| stage.with(path, |reading, placed| ShapeLight::of(reading, &placed.prim, &placed.path));
-        let glow = light("/Glow").unwrap().material(Some(&glowing([1.0, 1.0, 0.5])), || 6.0);
+        let glow = light("/Glow").unwrap().material(Some(&glowing([1.0, 1.0, 0.5])), 1.0, || 6.0);
         assert_eq!((&*glow.name, glow.emission.factor), ("bound", [0.5, 0.25, 0.25]));
         // Nothing glows: the light's own colour.
-        let glow = light("/Glow").unwrap().material(Some(&glowing([0.0; 3])), || 6.0);
+        let glow = light("/Glow").unwrap().material(Some(&glowing([0.0; 3])), 1.0, || 6.0);
         assert_eq!((&*glow.name, glow.emission.factor), ("bound", [0.5, 0.25, 0.5]));
         let alone = light("/Alone").unwrap();
-        let material = alone.material(Some(&glowing([1.0; 3])), || 0.0);
+        let material = alone.material(Some(&glowing([1.0; 3])), 1.0, || 0.0);
         assert_eq!((material.base_color.factor, material.emission.factor), ([0.0; 3], [3.0; 3]));
         assert!(!alone.links.cast_shadow);
-        let own = light("/Own").unwrap().material(Some(&glowing([0.5; 3])), || 0.0);
+        let own = light("/Own").unwrap().material(Some(&glowing([0.5; 3])), 1.0, || 0.0);
         assert_eq!((&*own.name, own.emission.factor), ("bound", [5.0; 3]));
         // The fallback of LightAPI itself.
-        let ball = light("/Ball").unwrap().material(Some(&glowing([0.5; 3])), || 0.0);
+        let ball = light("/Ball").unwrap().material(Some(&glowing([0.5; 3])), 1.0, || 0.0);
         assert_eq!((&*ball.name, ball.emission.factor), ("light", [1.0; 3]));
         assert_eq!(light("/Dark"), None);
-        let (target, old) = stage.with("/Old", geometry_light).unwrap();
-        assert_eq!((target.as_str(), old.material(None, || 0.0).emission.factor), ("/Dark", [2.0; 3]));
+        let profiles = &mut Profiles::default();
+        let old = stage.with("/Old", |reading, placed| geometry_light(reading, placed, profiles)).unwrap();
+        assert_eq!(old.shaped, None);
+        assert_eq!((old.target.as_str(), old.light.material(None, 1.0, || 0.0).emission.factor), ("/Dark", [2.0; 3]));
         assert_eq!(stage.said(), "");
     }
 
@@ -270,6 +332,7 @@ mod tests {
                     info: crate::desc::ObjectInfo::default(),
                     visibility: crate::desc::Visibility::ALL,
                     links: LightLinks::default(),
+                    shaped: None,
                     holdout: false,
                     catcher: false,
                 });

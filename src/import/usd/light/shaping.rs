@@ -15,7 +15,11 @@ pub(super) fn read(light: &Light<'_>, kind: &LightKind, profiles: &mut Profiles)
         }
         return (ShapingDesc::default(), 1.0);
     }
-    let flat = matches!(kind, LightKind::Rect { .. } | LightKind::Disk { .. });
+    of(values, matches!(kind, LightKind::Rect { .. } | LightKind::Disk { .. }), profiles)
+}
+
+/// The same of a light that is not infinitely far away; a `flat` one shines to one side at most.
+pub(super) fn of(values: &Values<'_>, flat: bool, profiles: &mut Profiles) -> (ShapingDesc, f64) {
     let cone = cone(values, flat);
     // Below 0 it is ignored.
     let focus = values.number("inputs:shaping:focus").unwrap_or(0.0).max(0.0);

@@ -30,6 +30,7 @@ pub(super) fn lamp(light: &Light<'_>, images: &mut Images, profiles: &mut Profil
     Some(desc.map(|own| {
         let (usd, factor) = shaping::read(light, &own.kind, profiles);
         let seen = rules::visibility(values, false);
+        let links = rules::links(values);
         LightDesc {
             name: light.path.name().unwrap_or_default().into(),
             kind: kind::scaled(own.kind, factor),
@@ -41,8 +42,9 @@ pub(super) fn lamp(light: &Light<'_>, images: &mut Images, profiles: &mut Profil
                 ..own.visibility
             },
             links: LightLinks {
-                cast_shadow: own.links.cast_shadow && rules::links(values).cast_shadow,
-                response: rules::links(values).response,
+                cast_shadow: own.links.cast_shadow && links.cast_shadow,
+                shadow: links.shadow,
+                response: links.response,
                 ..own.links.clone()
             },
             ..own
@@ -207,11 +209,13 @@ mod tests {
     #[test]
     fn edits_of_usdlux_count() {
         let edit = "float inputs:exposure = 1\ncolor3f inputs:color = (0, 1, 0)\nbool inputs:shadow:enable = 0
+            float inputs:shadow:distance = 2
             token visibility = \"inherited\"";
         let (scene, said) = load(&area("", edit));
         let light = &scene.lights[0];
         near(light.kind.color()[1], 2.0 * 0.5 * 100.0 / (PI * 0.25 * PI * 0.5));
         assert_eq!((light.kind.color()[0], light.links.cast_shadow, &*said), (0.0, false, ""));
+        assert_eq!(light.links.shadow.distance, 2.0);
         let (scene, _) = load(&area("", "token visibility = \"invisible\""));
         assert!(scene.lights.is_empty());
         let (scene, _) = load(&area("", "").replace("radius = 0.375", "radius = 0.75"));
