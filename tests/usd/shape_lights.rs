@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use penumbra::desc::{ConeDesc, InstanceDesc, ShadowDesc, ShapingDesc};
+use penumbra::desc::{ConeDesc, InstanceDesc, LinkSet, ShadowDesc, ShapingDesc};
 use penumbra::import::ImportOptions;
 
 use super::{Loaded, near, try_load};
@@ -106,4 +106,28 @@ fn shapes_have_the_shadows_of_lamps() {
     loaded.said_nothing();
     let shadow = ShadowDesc { color: [0.0, 0.0, 1.0], distance: 2.0, falloff: 0.5, gamma: 1.0 };
     assert_eq!(loaded.one("/Glow").links.shadow, shadow);
+}
+
+#[test]
+fn a_geometry_light_has_its_links_and_tells_of_what_it_does_not_find() {
+    let loaded = load(
+        r#"def Mesh "Named" { TRIANGLE }
+        def Mesh "Lit" { TRIANGLE }
+        def Mesh "Other" { TRIANGLE }
+        def Xform "Group" { }
+        def GeometryLight "By" {
+            rel geometry = </Named>
+            uniform bool collection:lightLink:includeRoot = 0
+            rel collection:lightLink:includes = [</Lit>]
+        }
+        def GeometryLight "OfGroup" { rel geometry = </Group> }
+        def GeometryLight "OfNothing" { rel geometry = </Nowhere> }"#,
+    );
+    let links = &loaded.one("/Named").links;
+    let lit = loaded.scene.instances.iter().position(|instance| &*instance.name == "Lit").unwrap();
+    assert_eq!(links.receivers, Some(LinkSet { instances: vec![lit as u32], exclude: false }));
+    assert_eq!(links.blockers, None);
+    for light in ["/OfGroup: its geometry /Group", "/OfNothing: its geometry /Nowhere"] {
+        loaded.said_of(light);
+    }
 }

@@ -1,7 +1,7 @@
 //! Shapes and instances of the scene.
 
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use openusd::sdf::Path;
@@ -26,6 +26,17 @@ pub(super) struct ShapeLights {
 }
 
 impl ShapeLights {
+    /// Tells of GeometryLights whose shapes are not among those that were `found`.
+    pub fn tell_of_missing(&self, reading: &Reading<'_>, found: &[Found]) {
+        let shapes = found.iter().filter(|found| found.look.shape.is_some()).map(|found| &found.path);
+        let shown: HashSet<&Path> = if self.geometry.is_empty() { HashSet::new() } else { shapes.collect() };
+        let mut missing: Vec<_> = self.geometry.iter().filter(|(target, _)| !shown.contains(target)).collect();
+        missing.sort_by_key(|(_, light)| &light.path);
+        for (target, light) in missing {
+            reading.warn(&light.path, format!("its geometry {target} is no shape that is shown: it does not shine"));
+        }
+    }
+
     /// Keeps how the shape at `path` shines, a light with the properties of `prim`.
     pub fn read_shaping(
         &mut self,

@@ -34,8 +34,9 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     let shapes = shapes::build(reading, &found, shapes, &mut materials);
     materials.finish(&mut scene);
     instances::place(reading, &found, &times, shapes, &shape_lights, &mut scene);
+    shape_lights.tell_of_missing(reading, &found);
     if found.iter().any(|found| found.look.linked) {
-        light::link(reading, &mut scene);
+        light::link(reading, |shape| shape_lights.geometry.get(shape).map(|light| &light.path), &mut scene);
     }
     if moves(&scene) {
         let what = "something moves while the shutter is open; motion blur is not rendered yet, all stands still";

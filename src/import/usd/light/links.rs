@@ -6,18 +6,23 @@ use openusd::usd::{CollectionAPI, PathRule, Prim};
 use super::super::stage::Reading;
 use crate::desc::{LinkSet, SceneDesc};
 
-/// Fills the links of all lights, lamps and shapes with LightAPI alike, once all instances are there.
-pub(in super::super) fn link(reading: &Reading<'_>, scene: &mut SceneDesc) {
+/// Fills the links of all lights once all instances are there: of lamps, of shapes with LightAPI, and of shapes
+/// that another prim makes shine, which `light_of` gives.
+pub(in super::super) fn link<'a>(
+    reading: &Reading<'_>,
+    light_of: impl Fn(&Path) -> Option<&'a Path>,
+    scene: &mut SceneDesc,
+) {
     let path_of = |node: Option<&str>| Path::new(node?).ok();
     let instances: Vec<Option<Path>> = scene.instances.iter().map(|i| path_of(i.place.node.as_deref())).collect();
     let lamps = scene.lights.iter_mut().map(|light| (&light.place, &mut light.links, true));
     let shapes = scene.instances.iter_mut().map(|instance| (&instance.place, &mut instance.links, false));
     for (place, links, is_lamp) in lamps.chain(shapes) {
-        let Some(prim) = path_of(place.node.as_deref()).and_then(|path| reading.stage.prim(path).ok()) else {
-            continue;
-        };
+        let Some(path) = path_of(place.node.as_deref()) else { continue };
+        let Ok(mut prim) = reading.stage.prim(path.clone()) else { continue };
         if !is_lamp && !prim.has_api_schema("LightAPI").unwrap_or(false) {
-            continue;
+            let Some(Ok(light)) = light_of(&path).map(|light| reading.stage.prim(light.clone())) else { continue };
+            prim = light;
         }
         links.receivers = members(&prim, "lightLink", &instances);
         links.blockers = members(&prim, "shadowLink", &instances);

@@ -150,6 +150,8 @@ impl Shaped {
 /// The shape that a GeometryLight makes shine, and how.
 #[derive(Debug)]
 pub(in super::super) struct GeometryLight {
+    /// Of the light itself.
+    pub path: sdf::Path,
     /// The shape.
     pub target: sdf::Path,
     /// What it is then.
@@ -172,7 +174,7 @@ pub(in super::super) fn geometry_light(
     let light = ShapeLight::new(&values, Sync::NoResponse);
     let shaped = if light.is_shaped { Shaped::of(&values, profiles) } else { None };
     let shaped = shaped.map(|shaped| Shaped { world: Some(placed.world), ..shaped });
-    Some(GeometryLight { target, light, shaped })
+    Some(GeometryLight { path: placed.path.clone(), target, light, shaped })
 }
 
 /// Surface of `shape` where `world` puts it, in square units of the stage.
