@@ -36,7 +36,9 @@ pub(super) fn links(values: &Values<'_>) -> LightLinks {
 fn shadow(values: &Values<'_>) -> ShadowDesc {
     let otherwise = ShadowDesc::default();
     // What is no number is told where the scene is prepared.
-    let length = |name: &str| values.number(name).filter(|length| !(*length < 0.0)).map(|l| l * values.reading.meters);
+    let length = |name: &str| {
+        values.number(name).filter(|length| length.is_nan() || *length >= 0.0).map(|l| l * values.reading.meters)
+    };
     let Some(distance) = length("inputs:shadow:distance") else {
         // Without a distance nothing falls off.
         return ShadowDesc { color: color(values), ..otherwise };
