@@ -427,7 +427,8 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
     use penumbra::desc::{Attribute, Channel, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc};
     use penumbra::desc::{TextureRef, TextureTransform, Wrap};
     // A board of holes: its mean alpha is a half, and a threshold of the mean would close or open all.
-    let indirect = |cutoff: f64| {
+    let indirect = |cutoff: f64, channel: Channel| {
+        let gray = channel == Channel::R;
         let mut builder = Builder::default();
         let board: Vec<u8> = (0..64 * 64).map(|i| if (i % 64 / 8 + i / 512) % 2 == 0 { 255 } else { 0 }).collect();
         let image = ImageDesc {
@@ -435,9 +436,12 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
             place: Default::default(),
             width: 64,
             height: 64,
-            channels: 2,
+            channels: if gray { 1 } else { 2 },
             color_space: ColorSpace::Linear,
-            pixels: PixelData::U8(board.iter().flat_map(|&alpha| [255, alpha]).collect()),
+            pixels: PixelData::U8(match gray {
+                true => board,
+                false => board.iter().flat_map(|&alpha| [255, alpha]).collect(),
+            }),
         };
         builder.desc.images.push(image.into());
         builder.desc.textures.push(TextureDesc {
@@ -451,7 +455,7 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
         let floor = builder.lambert(0.8);
         let sheet = builder.material(MaterialDesc {
             specular: ScalarInput::constant(0.0),
-            alpha: ScalarInput::textured(1.0, Some((texture, Channel::A))),
+            alpha: ScalarInput::textured(1.0, Some((texture, channel))),
             alpha_mode: AlphaMode::Mask { cutoff },
             ..MaterialDesc::default()
         });
@@ -466,5 +470,7 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
         let settings = Settings { max_bounces: 4, ..settings("diffuse_indirect,combined", 256) };
         mean(&picture(&builder.desc, 8, &settings), "Combined", 0)
     };
-    close("masks of cutoff 0.45 and 0.55", indirect(0.45), indirect(0.55), 0.08);
+    close("masks of cutoff 0.45 and 0.55", indirect(0.45, Channel::A), indirect(0.55, Channel::A), 0.08);
+    // Images without alpha are masks, too.
+    assert_eq!(indirect(0.45, Channel::R), indirect(0.45, Channel::A));
 }

@@ -4,7 +4,7 @@
 //! point: per pixel, per hit or per bounce.
 
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{AlphaMode, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
+use crate::desc::{AlphaMode, Channel, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -141,7 +141,10 @@ fn lets_pass(material: &MaterialDesc) -> bool {
 /// True where the material's opacity is 1 everywhere.
 pub(super) fn is_opaque(scene: &SceneDesc, material: &MaterialDesc) -> bool {
     let alpha = &material.alpha;
-    let textured = alpha.texture.is_some_and(|(texture, _)| {
+    let textured = alpha.texture.is_some_and(|(texture, channel)| {
+        if channel != Channel::A {
+            return true;
+        }
         let image = scene.textures.get(texture.texture as usize).and_then(|t| scene.images.get(t.image as usize));
         image.is_some_and(|image| matches!(image.channels, 2 | 4))
     });

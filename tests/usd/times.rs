@@ -51,7 +51,7 @@ fn the_stage_starts_where_it_says() {
     assert_eq!(loaded.origin("/Linear/T"), [0.0, 0.0, 0.0]);
     let late = load("times.usda", &at_frame(40.0));
     assert_eq!(late.origin("/Linear/T"), [10.0, 0.0, 0.0]);
-    late.said_of("frame 40 is outside of the stage's time codes 1 to 20; the nearest are held");
+    late.said_of("frame 40 is outside of the stage's time codes 1 to 20; what has samples there shows them");
 }
 
 #[test]

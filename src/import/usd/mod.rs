@@ -26,9 +26,9 @@ mod flow;
 mod frame;
 mod gather;
 mod images;
-mod implied;
 
 mod inherit;
+mod instance_classes;
 mod instancer;
 mod instances;
 mod kinds;

@@ -224,7 +224,9 @@ fn time(stage: &Stage, frame: Option<f64>, place: &Place, warnings: &mut Warning
     let (start, end) = (stage.start_time_code(), stage.end_time_code());
     let Some(frame) = frame else { return TimeCode::new(start) };
     if frame < start || frame > end {
-        let what = format!("frame {frame} is outside of the stage's time codes {start} to {end}; the nearest are held");
+        let what = format!(
+            "frame {frame} is outside of the stage's time codes {start} to {end}; what has samples there shows them"
+        );
         warnings.push(place, what);
     }
     TimeCode::new(frame)

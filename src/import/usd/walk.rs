@@ -16,7 +16,7 @@ use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{clips, cycles, draw_mode, implied, instancer, prototypes, schemas, skel, stamp};
+use super::{clips, cycles, draw_mode, instance_classes, instancer, prototypes, schemas, skel, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -196,7 +196,7 @@ impl<'r, 'a> Walk<'r, 'a> {
         }
         let is_instance = flag(prim, FieldKey::Instanceable) == Some(true)
             && prim.is_instance().unwrap_or(false)
-            && !implied::take_apart(reading, prim);
+            && !instance_classes::take_apart(reading, prim);
         if let Some(later) = self.later.as_mut().filter(|_| is_instance || kind.role == Role::Instancer) {
             later.push((shown.len(), prim.path().clone()));
             return None;

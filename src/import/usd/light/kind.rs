@@ -106,6 +106,11 @@ fn sphere(light: &Light<'_>, emission: [f64; 3]) -> LightKind {
             false if reading.blender && radius == 0.0 => 1.0,
             false => PI * radius * radius,
         };
+        if factor == 0.0 {
+            light
+                .values
+                .warn("a sphere of radius 0 has no surface to shine with, unless inputs:normalize is set: it is dark");
+        }
         return LightKind::Point { intensity: times(emission, factor) };
     }
     // Lamps of Blender have it from the start.

@@ -344,7 +344,7 @@ mod tests {
                 let light = crate::desc::LightDesc::new(path, reading.place.at(path), DAffine3::IDENTITY, kind);
                 scene.lights.push(light);
             }
-            super::super::link(reading, &mut scene);
+            super::super::link(reading, |_| None, &mut scene);
             let links: Vec<_> =
                 scene.lights.iter().map(|l| (l.links.receivers.clone(), l.links.blockers.clone())).collect();
             assert_eq!(links[0], (None, None));

@@ -36,11 +36,25 @@ impl Builder<'_, '_> {
             false => shade::Input::from_attribute(attribute.clone())?.value_producing_attributes(ProducerFilter::Any),
         };
         match typed {
-            Ok(found) => Some(found.first()?.attribute().clone()),
+            Ok(found) => match found.first() {
+                Some(found) => Some(found.attribute().clone()),
+                None => {
+                    self.tell_of_lost(attribute);
+                    None
+                }
+            },
             Err(error) => {
                 self.reading.warn(attribute.path(), format!("its connections can't be followed: {error}"));
                 None
             }
+        }
+    }
+
+    /// Tells of a connection to what is not there.
+    fn tell_of_lost(&self, attribute: &Attribute) {
+        let to = attribute.connections().unwrap_or_default();
+        if let Some(to) = to.first() {
+            self.reading.warn(attribute.path(), format!("it is connected to {to}, which gives nothing: left out"));
         }
     }
 

@@ -365,6 +365,7 @@ fn displacement_and_volumes_beside_a_surface_are_told() {
     let read = mtlx("ND_standard_surface_surfaceshader", "", nodes);
     assert!(read.warnings.contains("its displacement is left out") && read.warnings.contains("its volume is left out"));
     // UsdPreviewSurface is its own displacement, of which an input tells.
-    let preview = preview("", "token outputs:displacement.connect = </m/s.outputs:displacement>");
+    let preview =
+        preview("token outputs:displacement", "token outputs:displacement.connect = </m/s.outputs:displacement>");
     assert_eq!(preview.warnings, "");
 }

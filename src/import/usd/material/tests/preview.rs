@@ -334,3 +334,10 @@ fn unbound_shapes_show_their_display_color() {
     assert_eq!(materials.get(index).unwrap().base_color, ColorInput::constant([1.0; 3]));
     assert_eq!(materials.tangent_uv_set(index), None);
 }
+
+#[test]
+fn connections_to_what_is_not_there_are_told() {
+    let read = preview("color3f inputs:diffuseColor.connect = </m/gone.outputs:rgb>", "");
+    same(&read.material().base_color.factor, &[0.18, 0.18, 0.18]);
+    assert!(read.warnings.contains("it is connected to /m/gone.outputs:rgb, which gives nothing"), "{}", read.warnings);
+}
