@@ -15,6 +15,7 @@ use super::authored::Authored;
 use super::clips::Declared;
 use super::files::Files;
 use super::layer::{Kept, Met, Site};
+use super::retime::Retime;
 use super::units::Units;
 use super::{cycles, diagnostics, render, skel, variants};
 use crate::error::{Error, Place, Result, Warnings};
@@ -47,6 +48,8 @@ pub(super) struct Reading<'a> {
     pub layers: Cell<usize>,
     /// True where a layer has value clips.
     pub clipped: Cell<bool>,
+    /// True where a layer that is referred to has classes, which are implied in others.
+    pub implied: Cell<bool>,
     pub declared: RefCell<Declared>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
@@ -101,6 +104,7 @@ impl<'a> Reading<'a> {
             binding_purposes: Vec::new(),
             layers: Cell::new(0),
             clipped: Cell::new(false),
+            implied: Cell::new(false),
             declared: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
@@ -183,6 +187,7 @@ impl<'a> Reading<'a> {
             let value = spline.at(time).filter(|value| T::accepts_kind(ValueKind::from(value)))?;
             return T::try_from(value).ok();
         }
+        let time = Retime::of(self, attribute).map_or(time, |retime| retime.asked(time));
         match attribute.get_at::<T>(time) {
             Ok(Some(value)) => Some(value),
             Ok(None) => self.held(attribute, time),
