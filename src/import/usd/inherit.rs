@@ -11,9 +11,9 @@ use openusd_schemas::geom::Primvar;
 use super::bindings::Bindings;
 use super::draw_mode::DrawMode;
 use super::kinds::Kind;
-use super::{retime, skel};
 use super::stage::Reading;
 use super::xform::Xform;
+use super::{retime, skel};
 use crate::desc::Motion;
 use crate::import::Purpose;
 use crate::math::DAffine3;
@@ -245,7 +245,8 @@ impl<'r, 'a> Clock<'r, 'a> {
     pub fn samples(&mut self, [open, close]: [f64; 2]) -> Vec<f64> {
         let frame = self.reading.time.value();
         let movers = self.movers.take().unwrap_or_default();
-        let samples: Vec<Vec<f64>> = movers.iter().filter_map(|m| m.samples(self.reading, frame + open, frame + close)).collect();
+        let samples: Vec<Vec<f64>> =
+            movers.iter().filter_map(|m| m.samples(self.reading, frame + open, frame + close)).collect();
         if samples.is_empty() {
             return Vec::new();
         }
