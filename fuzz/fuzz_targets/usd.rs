@@ -21,8 +21,10 @@ fuzz_target!(|data: &[u8]| {
     for frame in [None, Some(7.5)] {
         let options = ImportOptions { frame, ..ImportOptions::default() };
         let mut warnings = Warnings::new();
-        if let Ok(scene) = import::scene(&path, &options, &mut warnings) {
-            penumbra::desc::check(&scene).expect("the door keeps the rules of SceneDesc");
+        match import::scene(&path, &options, &mut warnings) {
+            Ok(scene) => penumbra::desc::check(&scene).expect("the door keeps the rules of SceneDesc"),
+            // The door makes an error of a panic; here it stays one.
+            Err(error) => assert!(!error.to_string().contains("broke down"), "{error}"),
         }
     }
 });

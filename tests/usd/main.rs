@@ -9,6 +9,7 @@ mod draw_modes;
 mod instance_colors;
 mod instances;
 mod large;
+mod layers;
 mod mutation;
 mod primvars;
 #[path = "../support/rng.rs"]

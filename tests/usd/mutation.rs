@@ -255,6 +255,10 @@ fn no_damage_panics() {
         let start = Instant::now();
         match std::panic::catch_unwind(|| try_load(&path, &options).map(drop)) {
             Ok(Ok(())) => accepted += 1,
+            // The door makes an error of a panic; here it stays one.
+            Ok(Err(error)) if error.to_string().contains("broke down") => {
+                harm.push(format!("{error}: {}", keep(&path, case)));
+            }
             Ok(Err(_)) => {}
             Err(_) => harm.push(format!("panics: {}", keep(&path, case))),
         }

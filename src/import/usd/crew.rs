@@ -9,6 +9,7 @@ use std::sync::{Arc, mpsc};
 use openusd::sdf::Path;
 
 use super::gather::{Found, Gatherer, Haul, Read};
+use super::guard;
 use super::inherit::Clock;
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
@@ -109,9 +110,9 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
         let crew =
             Crew { shares, next, sender, aside, shutter: shutter.map(|shutter| (shutter, noter)), started, held };
         let (path, options) = (reading.place.file.as_deref().map(PathBuf::from), reading.options.clone());
-        // Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
+        // What breaks down here is left to this thread. Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
         let worker = std::thread::Builder::new().stack_size(super::STACK);
-        if worker.spawn(move || path.map(|path| crew.work(&path, &options))).is_ok() {
+        if worker.spawn(move || path.map(|path| guard::guarded(|| crew.work(&path, &options)))).is_ok() {
             reading.crew.borrow_mut().push(hold);
             start.push(starter);
         }

@@ -1,16 +1,17 @@
 //! Inherits and specializes that lead back to where they started. OpenUSD leaves the last of them out; the
 //! openusd crate (0.8) follows them until the stack ends, so they are taken out of its layers, in memory,
-//! before anything below them is composed. As that looks at every prim of a layer, it notes which stages have
-//! value clips, and the classes of referenced layers.
+//! before anything below them is composed; those that go through several layers: [`implied`](super::implied). As
+//! that looks at every prim of a layer, it notes which stages have value clips, and the classes of referenced layers.
 
 use std::collections::{HashMap, HashSet};
 
 use openusd::sdf::{self, ChildrenKey, FieldKey, Value};
 
+use super::layer;
 use super::stage::Reading;
 use crate::error::Place;
 
-const ARCS: [FieldKey; 2] = [FieldKey::InheritPaths, FieldKey::Specializes];
+pub(super) const ARCS: [FieldKey; 2] = [FieldKey::InheritPaths, FieldKey::Specializes];
 
 /// An authored arc.
 struct Arc {
@@ -30,19 +31,26 @@ pub(super) fn mend(reading: &Reading<'_>) {
     }
     let new: Vec<String> = reading.stage.layer_identifiers().into_iter().skip(seen).collect();
     reading.layers.set(seen + new.len());
+    if reading.met.borrow().renamed {
+        new.iter().for_each(|layer| layer::restore_names(&reading.stage, layer));
+    }
     if seen == 0 {
         // The layers of the stage itself, which are composed with one another.
-        return break_cycles(reading, &new, false);
+        break_cycles(reading, &new);
+        return;
     }
-    new.chunks(1).for_each(|layer| break_cycles(reading, layer, true));
+    for layer in new.chunks(1) {
+        // What others inherit is implied where they are referred to.
+        let classes = break_cycles(reading, layer);
+        reading.classes.borrow_mut().extend(classes);
+    }
 }
 
-fn break_cycles(reading: &Reading<'_>, layers: &[String], is_referenced: bool) {
+/// Takes them out of `layers`; gives the classes of all arcs that these have.
+fn break_cycles(reading: &Reading<'_>, layers: &[String]) -> Vec<sdf::Path> {
     let mut arcs = Vec::new();
     layers.iter().for_each(|layer| collect(reading, layer, &mut arcs));
-    if is_referenced {
-        reading.classes.borrow_mut().extend(arcs.iter().map(|arc| arc.to.clone()));
-    }
+    let classes = arcs.iter().map(|arc| arc.to.clone()).collect();
     let mut told = HashSet::new();
     for arc in cyclic(arcs) {
         let Some(mut layer) = reading.stage.layer_mut(&arc.layer) else { continue };
@@ -59,6 +67,7 @@ fn break_cycles(reading: &Reading<'_>, layers: &[String], is_referenced: bool) {
             reading.warnings.borrow_mut().push(&Place::file(&arc.layer).at(arc.from.as_str()), what);
         }
     }
+    classes
 }
 
 /// Every arc of a layer.

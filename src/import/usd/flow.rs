@@ -3,6 +3,7 @@
 use openusd::gf::Vec3f;
 use openusd::usd::{Attribute, Prim, TimeCode};
 
+use super::retime::Retime;
 use super::stage::Reading;
 use crate::math::DVec3;
 
@@ -34,7 +35,7 @@ impl Flow {
         if reading.time.is_earliest_time() {
             return None;
         }
-        let around = |name: &str| around(&prim.attribute(name), reading.time);
+        let around = |name: &str| around(reading, &prim.attribute(name), reading.time);
         let positions = around(array)?;
         let values = |name: &str| {
             let samples = around(name);
@@ -77,8 +78,13 @@ impl Flow {
 
 /// Times of the sample of `attribute` that counts at `time` and of those around it: a sample at `time` itself
 /// counts as that before. `None` where there are none.
-fn around(attribute: &Attribute, time: TimeCode) -> Option<[f64; 3]> {
-    let bracket = |time| attribute.bracketing_time_samples(time).ok().flatten();
+fn around(reading: &Reading<'_>, attribute: &Attribute, time: TimeCode) -> Option<[f64; 3]> {
+    let retime = Retime::of(reading, attribute);
+    let bracket = |time| {
+        let asked = retime.map_or(time, |retime| retime.asked(time));
+        let (from, after) = attribute.bracketing_time_samples(asked).ok().flatten()?;
+        Some(retime.map_or((from, after), |retime| (retime.told(from), retime.told(after))))
+    };
     let (from, after) = bracket(time)?;
     if (from - after).abs() >= f64::EPSILON {
         return Some([from, from, after]);
@@ -90,8 +96,8 @@ fn around(attribute: &Attribute, time: TimeCode) -> Option<[f64; 3]> {
 }
 
 /// The time of the sample of `attribute` that counts at `time`; `time` itself where there are no samples.
-pub(super) fn last_sample(attribute: &Attribute, time: TimeCode) -> TimeCode {
-    around(attribute, time).map_or(time, |[from, ..]| TimeCode::new(from))
+pub(super) fn last_sample(reading: &Reading<'_>, attribute: &Attribute, time: TimeCode) -> TimeCode {
+    around(reading, attribute, time).map_or(time, |[from, ..]| TimeCode::new(from))
 }
 
 pub(super) fn vector(v: Vec3f) -> DVec3 {

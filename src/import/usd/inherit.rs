@@ -11,9 +11,9 @@ use openusd_schemas::geom::Primvar;
 use super::bindings::Bindings;
 use super::draw_mode::DrawMode;
 use super::kinds::Kind;
-use super::skel;
 use super::stage::Reading;
 use super::xform::Xform;
+use super::{retime, skel};
 use crate::desc::Motion;
 use crate::import::Purpose;
 use crate::math::DAffine3;
@@ -211,13 +211,13 @@ pub(super) enum Mover {
 
 impl Mover {
     /// Times of its samples from `open` to `close`; `None` where it stays.
-    fn samples(&self, open: f64, close: f64) -> Option<Vec<f64>> {
+    fn samples(&self, reading: &Reading<'_>, open: f64, close: f64) -> Option<Vec<f64>> {
         match self {
-            Self::Transform(xform) if xform.varies() => Some(xform.samples(open, close)),
+            Self::Transform(xform) if xform.varies() => Some(xform.samples(reading, open, close)),
             Self::Attributes(attributes, velocities)
                 if *velocities || attributes.iter().any(|a| a.value_might_be_time_varying().unwrap_or(false)) =>
             {
-                Some(Attribute::unioned_time_samples_in_interval(attributes, open..=close).unwrap_or_default())
+                Some(retime::samples(reading, attributes, open, close))
             }
             _ => None,
         }
@@ -245,7 +245,8 @@ impl<'r, 'a> Clock<'r, 'a> {
     pub fn samples(&mut self, [open, close]: [f64; 2]) -> Vec<f64> {
         let frame = self.reading.time.value();
         let movers = self.movers.take().unwrap_or_default();
-        let samples: Vec<Vec<f64>> = movers.iter().filter_map(|m| m.samples(frame + open, frame + close)).collect();
+        let samples: Vec<Vec<f64>> =
+            movers.iter().filter_map(|m| m.samples(self.reading, frame + open, frame + close)).collect();
         if samples.is_empty() {
             return Vec::new();
         }

@@ -169,7 +169,7 @@ impl<'a> Layout<'a> {
     /// That of `count` instances; `None` where there are positions for another number of them.
     fn of(reading: &'a Reading<'a>, prim: &'a Prim, count: usize) -> Option<Self> {
         let turned_by = ["orientationsf", "orientations"].into_iter().find(|name| {
-            let at = flow::last_sample(&prim.attribute(*name), reading.time);
+            let at = flow::last_sample(reading, &prim.attribute(*name), reading.time);
             turns(reading, prim, name, at).is_some()
         });
         let flow = Flow::of(reading, prim, "positions", "velocities", Some("accelerations"), count);
@@ -183,7 +183,7 @@ impl<'a> Layout<'a> {
         // Between samples where nothing flows; the base that times of the shutter fall back to.
         let is_still = flow.is_none() && spin.is_none();
         let at = |name: &str| {
-            if is_still { reading.time } else { flow::last_sample(&prim.attribute(name), reading.time) }
+            if is_still { reading.time } else { flow::last_sample(reading, &prim.attribute(name), reading.time) }
         };
         let positions = vectors(reading, prim, "positions", at("positions")).filter(|p| p.len() == count)?;
         let scales = vectors(reading, prim, "scales", at("scales")).filter(|scales| fits(scales.len(), "scales"));

@@ -25,8 +25,9 @@ mod files;
 mod flow;
 mod frame;
 mod gather;
+mod guard;
 mod images;
-
+mod implied;
 mod inherit;
 mod instance_classes;
 mod instancer;
@@ -37,6 +38,7 @@ mod light;
 mod material;
 mod prototypes;
 mod render;
+mod retime;
 mod scene;
 mod schemas;
 mod shape;
@@ -66,30 +68,32 @@ const STACK: usize = 1 << 28;
 /// Reads the stage whose root layer is `path`.
 ///
 /// # Errors
-/// A root layer that can't be read. Everything else that is broken is told of, and the rest of the
+/// A root layer that can't be read, a fault of the openusd crate. Everything else that is broken is told of, and the rest of the
 /// stage is read.
 pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Result<SceneDesc> {
     let (sender, scene) = mpsc::channel();
     let read = {
         let (path, options) = (path.to_owned(), options.clone());
         move || {
-            let reading = match stage::Reading::open(&path, &options) {
-                Ok(reading) => reading,
-                Err(error) => return drop(sender.send((Err(error), Warnings::new()))),
-            };
-            let scene = scene::build(&reading);
-            let told = told::with_layers(&reading, reading.warnings.take());
-            // Letting go of a stage takes long, and nobody needs to wait for it.
-            let _ = sender.send((scene, told));
+            let reader = guard::guarded(|| {
+                let reading = match stage::Reading::open(&path, &options) {
+                    Ok(reading) => reading,
+                    Err(error) => return drop(sender.send((Err(error), Warnings::new()))),
+                };
+                let scene = scene::build(&reading);
+                let told = told::with_layers(&reading, reading.warnings.take());
+                // Letting go of a stage takes long, and nobody needs to wait for it.
+                let _ = sender.send((scene, told));
+            });
+            if let Err(reason) = reader {
+                let _ = sender.send((Err(guard::broken(&path, &reason)), Warnings::new()));
+            }
         }
     };
     // The openusd crate follows what is nested by calling itself: the stack of a thread of its own holds more.
     let reader = std::thread::Builder::new().name("usd".into()).stack_size(STACK).spawn(read);
-    let reader = reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
-    let Ok((scene, told)) = scene.recv() else {
-        let panic = reader.join().err().unwrap_or_else(|| Box::new("the reader of a stage left without a word"));
-        std::panic::resume_unwind(panic)
-    };
+    reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
+    let (scene, told) = scene.recv().map_err(|_| guard::broken(path, "its thread is gone"))?;
     warnings.extend(told);
     scene
 }

@@ -15,6 +15,7 @@ use super::authored::Authored;
 use super::clips::Declared;
 use super::files::Files;
 use super::layer::{Kept, Met, Site};
+use super::retime::Retime;
 use super::units::Units;
 use super::{cycles, diagnostics, render, skel, variants};
 use crate::error::{Error, Place, Result, Warnings};
@@ -47,7 +48,7 @@ pub(super) struct Reading<'a> {
     pub layers: Cell<usize>,
     /// True where a layer has value clips.
     pub clipped: Cell<bool>,
-    /// Classes that prims of referenced layers name.
+    /// Classes that prims of layers that are referred to name; they are implied in others.
     pub classes: RefCell<HashSet<sdf::Path>>,
     pub declared: RefCell<Declared>,
     /// What was told so far.
@@ -121,6 +122,11 @@ impl<'a> Reading<'a> {
         Ok(reading)
     }
 
+    /// True where a layer that is referred to has classes, which are implied in others.
+    pub fn has_referenced_classes(&self) -> bool {
+        !self.classes.borrow().is_empty()
+    }
+
     /// The place of the prim or property at `path`.
     pub fn place_of(&self, path: &sdf::Path) -> Place {
         self.place.at(path.as_str())
@@ -186,6 +192,7 @@ impl<'a> Reading<'a> {
             let value = spline.at(time).filter(|value| T::accepts_kind(ValueKind::from(value)))?;
             return T::try_from(value).ok();
         }
+        let time = Retime::of(self, attribute).map_or(time, |retime| retime.asked(time));
         match attribute.get_at::<T>(time) {
             Ok(Some(value)) => Some(value),
             Ok(None) => self.held(attribute, time),

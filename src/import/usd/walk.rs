@@ -16,7 +16,7 @@ use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{clips, cycles, draw_mode, instance_classes, instancer, prototypes, schemas, skel, stamp};
+use super::{clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, schemas, skel, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -157,9 +157,7 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// prototypes of point instancers.
     pub fn below(&mut self, prim: &Prim, context: Context, overs: bool, shown: &mut Vec<Shown>) {
         let mut stack = Vec::new();
-        let reading = self.reading;
         let push = |stack: &mut Vec<(Prim, Rc<Context>)>, prim: &Prim, context: Context| {
-            cycles::mend(reading);
             let children = prim.children().unwrap_or_default();
             let context = Rc::new(context);
             stack.extend(children.into_iter().rev().map(|child| (child, context.clone())));
@@ -187,6 +185,9 @@ impl<'r, 'a> Walk<'r, 'a> {
         if !defined || !flag(prim, FieldKey::Active).unwrap_or(true) {
             return None;
         }
+        // Before what is below is composed.
+        cycles::mend(reading);
+        implied::mend(reading, prim);
         if reading.clipped.get() {
             clips::declare(reading, prim);
         }

@@ -9,6 +9,7 @@ use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::XformOp;
 
 use super::layer::Site;
+use super::retime::{self, Retime};
 use super::stage::Reading;
 use crate::math::{DAffine3, DMat3, DVec3};
 
@@ -28,6 +29,7 @@ struct Op {
     op: XformOp,
     /// The curve that its number follows.
     spline: Option<Rc<Site>>,
+    retime: Option<Retime>,
 }
 
 impl Op {
@@ -36,6 +38,7 @@ impl Op {
             let number = spline.at(time).and_then(|value| value.cast::<f64>().ok());
             return Ok(number.map_or(Matrix4d::IDENTITY, |number| about_an_axis(&self.op, number)));
         }
+        let time = self.retime.map_or(time, |retime| retime.asked(time));
         match self.op.op_transform(time) {
             // Also that of an operation without value.
             Ok(matrix) if matrix == Matrix4d::IDENTITY => self.op.op_transform(held(self.op.attribute(), time)),
@@ -85,7 +88,8 @@ impl Xform {
             if names.contains(&name) {
                 let attribute = prim.attribute(name);
                 let spline = reading.spline(&attribute);
-                xform.ops.push(Op { op: XformOp::new(&attribute, inverse), spline });
+                let retime = Retime::of(reading, &attribute).filter(|_| spline.is_none());
+                xform.ops.push(Op { op: XformOp::new(&attribute, inverse), spline, retime });
             }
         }
         Some(xform)
@@ -119,10 +123,10 @@ impl Xform {
     }
 
     /// Times of its samples from `open` to `close`.
-    pub fn samples(&self, open: f64, close: f64) -> Vec<f64> {
+    pub fn samples(&self, reading: &Reading<'_>, open: f64, close: f64) -> Vec<f64> {
         let (curved, sampled): (Vec<&Op>, Vec<&Op>) = self.ops.iter().partition(|op| op.spline.is_some());
         let attributes: Vec<Attribute> = sampled.iter().map(|op| op.op.attribute().clone()).collect();
-        let mut times = Attribute::unioned_time_samples_in_interval(&attributes, open..=close).unwrap_or_default();
+        let mut times = retime::samples(reading, &attributes, open, close);
         let splines = curved.iter().filter_map(|op| op.spline.as_ref()).filter(|spline| spline.varies());
         times.extend(splines.flat_map(|spline| spline.samples(open, close)));
         times

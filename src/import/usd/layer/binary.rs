@@ -68,7 +68,7 @@ pub(super) fn mend(bytes: &[u8]) -> Option<Mended> {
     let is_read = *version <= READ;
     *version = (*version).min(READ);
     let mut file = CrateFile::open(bytes.clone()).ok()?;
-    let mut mended = Mended { bytes: Vec::new(), splines: false, told: Vec::new() };
+    let mut mended = Mended { bytes: Vec::new(), renamed: false, splines: false, told: Vec::new() };
     let mut changed = false;
     let mut edits = Vec::new();
     let mut blocks = Vec::new();

@@ -4,9 +4,11 @@
 mod binary;
 mod kept;
 mod lex;
+mod names;
 mod text;
 
 pub(super) use kept::{Kept, Site, inactive_ids};
+pub(super) use names::restore as restore_names;
 
 use std::io::{self, Cursor, Read, Seek};
 
@@ -20,6 +22,8 @@ struct Mended {
     bytes: Vec<u8>,
     /// True where an attribute has a curve, kept as [`kept`] finds it.
     splines: bool,
+    /// True where names of properties are in other letters, as [`names`] has them.
+    renamed: bool,
     /// Paths in the layer, and what is told of them.
     told: Vec<(String, String)>,
 }
@@ -28,6 +32,7 @@ struct Mended {
 #[derive(Default)]
 pub(super) struct Met {
     pub splines: bool,
+    pub renamed: bool,
     /// Layer, path in it, and what is told.
     pub told: Vec<(String, String, String)>,
 }
@@ -50,8 +55,9 @@ pub(super) fn mend(mut asset: Box<dyn Asset>, name: &str, met: &mut Met) -> io::
     }
     let bytes = asset.into_buffer()?;
     let mended = if is_text { text::mend(&bytes) } else { binary::mend(&bytes) };
-    let Some(Mended { bytes, splines, told }) = mended else { return Ok(Box::new(Cursor::new(bytes))) };
+    let Some(Mended { bytes, splines, renamed, told }) = mended else { return Ok(Box::new(Cursor::new(bytes))) };
     met.splines |= splines;
+    met.renamed |= renamed;
     met.told.extend(told.into_iter().map(|(path, what)| (name.to_string(), path, what)));
     Ok(Box::new(Cursor::new(AssetBuffer::Owned(bytes))))
 }

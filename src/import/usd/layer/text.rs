@@ -6,13 +6,15 @@ use std::ops::Range;
 use super::Mended;
 use super::kept::{INACTIVE, KEPT};
 use super::lex::{Kind, Lexer, Token};
+use super::names;
 
 /// `text` in the crate's words; `None` where it is in them already.
 pub(super) fn mend(text: &[u8]) -> Option<Mended> {
-    let mut mender = Mender { text, changes: Vec::new(), splines: false, told: Vec::new(), scopes: Vec::new() };
+    let (changes, told, scopes) = Default::default();
+    let mut mender = Mender { text, changes, splines: false, renamed: false, told, scopes };
     mender.header();
     mender.read();
-    let Mender { mut changes, splines, told, .. } = mender;
+    let Mender { mut changes, splines, renamed, told, .. } = mender;
     if changes.is_empty() {
         return None;
     }
@@ -25,7 +27,7 @@ pub(super) fn mend(text: &[u8]) -> Option<Mended> {
         done = at.end;
     }
     bytes.extend_from_slice(&text[done..]);
-    Some(Mended { bytes, splines, told })
+    Some(Mended { bytes, splines, renamed, told })
 }
 
 struct Mender<'a> {
@@ -33,6 +35,7 @@ struct Mender<'a> {
     /// What is put in the place of what; no two overlap.
     changes: Vec<(Range<usize>, Vec<u8>)>,
     splines: bool,
+    renamed: bool,
     told: Vec<(String, String)>,
     /// Names of the prims that are open; `None` for other braces.
     scopes: Vec<Option<String>>,
@@ -65,6 +68,9 @@ impl Mender<'_> {
         while let Some(token) = tokens.next() {
             if token.kind == Kind::Quoted {
                 self.quoted(&token);
+            }
+            if token.kind == Kind::Word {
+                self.rename(&token);
             }
             let sign_before = match &before[1] {
                 Some(Token { kind: Kind::Sign(sign), .. }) => *sign,
@@ -135,6 +141,16 @@ impl Mender<'_> {
                 i += 1;
             }
             i += 1;
+        }
+    }
+
+    /// Words in quotes aside, the crate reads ASCII letters alone.
+    fn rename(&mut self, token: &Token) {
+        let Ok(name) = std::str::from_utf8(self.word(token)) else { return };
+        if !name.is_ascii() {
+            let plain = names::plain(name).into_bytes();
+            self.changes.push((token.at.clone(), plain));
+            self.renamed = true;
         }
     }
 
@@ -268,6 +284,15 @@ mod tests {
     fn numbers_get_their_digits() {
         assert_eq!(mended("double x = .5"), "double x = 0.5");
         assert_eq!(mended("(1., -.5, 2.e3, .25e-1)"), "(1.0, -.5, 2.0e3, 0.25e-1)");
+    }
+
+    /// In strings, paths and the names of prims the crate reads them.
+    #[test]
+    fn names_of_properties_get_ascii_letters() {
+        let text = "#usda 1.0\ndef Mesh \"Öl\" {\n float[] primvars:größe = [1] ( doc = \"ä\" )\n rel r = </Öl.primvars:größe>\n}\n";
+        let mended = mend(text.as_bytes()).unwrap();
+        let plain = text.replacen("primvars:größe =", &format!("{} =", names::plain("primvars:größe")), 1);
+        assert!(mended.renamed && mended.bytes == plain.as_bytes(), "{}", String::from_utf8_lossy(&mended.bytes));
     }
 
     #[test]

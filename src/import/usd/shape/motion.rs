@@ -4,6 +4,7 @@ use openusd::sdf::Value;
 use openusd::usd::{Prim, TimeCode};
 
 use super::super::flow::Flow;
+use super::super::retime;
 use super::super::skel::Deformer;
 use super::super::stage::Reading;
 use super::values::triples;
@@ -63,7 +64,7 @@ pub(super) fn read(
             None => points,
         })
     };
-    let mut times = attribute.time_samples_in_interval(open..=close).unwrap_or_default();
+    let mut times = retime::samples(reading, std::slice::from_ref(&attribute), open, close);
     times.extend(deforms.into_iter().flatten());
     times.extend([open, close]);
     times.sort_by(f64::total_cmp);

@@ -8,6 +8,7 @@ use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::Interpolation;
 use rayon::prelude::*;
 
+use super::super::retime;
 use super::super::shape::primvar::Data;
 use super::super::stage::Reading;
 use super::super::xform::{Xform, affine};
@@ -177,8 +178,8 @@ impl<'a> Deformer<'a> {
         if !attributes.iter().any(varies) && xforms().next().is_none() {
             return None;
         }
-        let mut times = Attribute::unioned_time_samples_in_interval(&attributes, open..=close).unwrap_or_default();
-        times.extend(xforms().flat_map(|xform| xform.samples(open, close)));
+        let mut times = retime::samples(self.reading, &attributes, open, close);
+        times.extend(xforms().flat_map(|xform| xform.samples(self.reading, open, close)));
         Some(times)
     }
 }
