@@ -22,10 +22,14 @@ def put(folder, **layers):
     return folder / "root.usda"
 
 
-@pytest.mark.parametrize("first", range(0, 30, 10))
+# OpenUSD itself never ends on it.
+ENDLESS = {32}
+
+
+@pytest.mark.parametrize("first", range(0, 60, 10))
 def test_random_layers_are_composed_as_openusd_composes_them(tmp_path, first):
     judged = 0
-    for seed in range(first, first + 10):
+    for seed in set(range(first, first + 10)) - ENDLESS:
         folder = tmp_path / str(seed)
         folder.mkdir()
         path = Layers(seed).write(folder)

@@ -11,6 +11,7 @@ use openusd::sdf::Path;
 use super::gather::{Found, Gatherer, Haul, Read};
 use super::guard;
 use super::inherit::Clock;
+use super::pulse::Pulse;
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
 use crate::error::Warnings;
@@ -112,7 +113,12 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
         let (path, options) = (reading.place.file.as_deref().map(PathBuf::from), reading.options.clone());
         // What breaks down here is left to this thread. Not scoped: letting go of a stage takes long, and nobody needs to wait for it.
         let worker = std::thread::Builder::new().stack_size(super::STACK);
-        if worker.spawn(move || path.map(|path| guard::guarded(|| crew.work(&path, &options)))).is_ok() {
+        let pulse = Pulse::own();
+        let work = move || {
+            pulse.adopt();
+            path.map(|path| guard::guarded(|| crew.work(&path, &options)))
+        };
+        if worker.spawn(work).is_ok() {
             reading.crew.borrow_mut().push(hold);
             start.push(starter);
         }

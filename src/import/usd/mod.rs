@@ -37,6 +37,7 @@ mod layer;
 mod light;
 mod material;
 mod prototypes;
+mod pulse;
 mod render;
 mod retime;
 mod scene;
@@ -58,6 +59,7 @@ mod xform;
 use std::path::Path;
 use std::sync::mpsc;
 
+use self::pulse::Pulse;
 use super::ImportOptions;
 use crate::desc::SceneDesc;
 use crate::error::{Error, Result, Warnings};
@@ -72,9 +74,11 @@ const STACK: usize = 1 << 28;
 /// stage is read.
 pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Result<SceneDesc> {
     let (sender, scene) = mpsc::channel();
+    let pulse = Pulse::default();
     let read = {
-        let (path, options) = (path.to_owned(), options.clone());
+        let (path, options, pulse) = (path.to_owned(), options.clone(), pulse.clone());
         move || {
+            pulse.adopt();
             let reader = guard::guarded(|| {
                 let reading = match stage::Reading::open(&path, &options) {
                     Ok(reading) => reading,
@@ -93,7 +97,7 @@ pub fn load(path: &Path, options: &ImportOptions, warnings: &mut Warnings) -> Re
     // The openusd crate follows what is nested by calling itself: the stack of a thread of its own holds more.
     let reader = std::thread::Builder::new().name("usd".into()).stack_size(STACK).spawn(read);
     reader.map_err(|source| Error::io(path, "can't start a thread for", source))?;
-    let (scene, told) = scene.recv().map_err(|_| guard::broken(path, "its thread is gone"))?;
+    let (scene, told) = pulse.wait(&scene, pulse::STILL).map_err(|reason| guard::broken(path, &reason))?;
     warnings.extend(told);
     scene
 }

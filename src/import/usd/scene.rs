@@ -13,7 +13,7 @@ use super::light::Profiles;
 use super::material::Materials;
 use super::stage::Reading;
 use super::walk::Placed;
-use super::{camera, crew, instances, light, render, shapes, stamp, units, variants};
+use super::{camera, crew, instances, light, pulse, render, shapes, stamp, units, variants};
 use crate::desc::{RenderDesc, SceneDesc};
 use crate::error::Result;
 
@@ -26,6 +26,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
         ..SceneDesc::default()
     };
     let haul = gather(reading);
+    pulse::rest();
     let mut images = Images::default();
     let shape_lights = lights_and_cameras(reading, &haul, &mut images, &mut scene);
     let mut materials = Materials::new(reading, images);

@@ -16,7 +16,7 @@ use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, schemas, skel, stamp};
+use super::{clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, pulse, schemas, skel, stamp};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -177,6 +177,7 @@ impl<'r, 'a> Walk<'r, 'a> {
     /// there may be something to see in them.
     pub fn enter(&mut self, prim: &Prim, context: &Context, overs: bool, shown: &mut Vec<Shown>) -> Option<Context> {
         let reading = self.reading;
+        pulse::beat(prim.path());
         let defined = match prim.specifier().ok().flatten() {
             Some(Specifier::Def) => true,
             Some(Specifier::Over) => overs,
