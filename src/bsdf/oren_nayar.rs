@@ -33,7 +33,7 @@ impl OrenNayar {
         let lost = (1.0 - average).max(0.0);
         let missing = if multiscatter { average / lost.max(1e-6) * (1.0 - seen).max(0.0) } else { 0.0 };
         // The value is multiplied by the color once more. The paper has one factor of the color here; Cycles has two,
-        // which takes up to 3 % from a gray of 0.4 seen from above.
+        // which takes 6 % from a gray of 0.4 of roughness 1 seen from above.
         let color = color.map(|c| c.clamp(0.0, 1.0));
         let several = color.map(|c| FRAC_1_PI * sqr(c) * missing / (1.0 - c * lost));
         let albedo = several.map(|s| seen + s * PI * lost);

@@ -1,5 +1,5 @@
 """One scene, three doors: F12, and Export for Penumbra to USD and to glTF with the command line. The pictures agree
-but for their noise. Needs the program, built for debugging or named by PENUMBRA_EXE."""
+but for their noise. Needs the program, built for debugging or named by PENUMBRA."""
 
 import subprocess
 from pathlib import Path

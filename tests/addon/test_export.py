@@ -1,5 +1,5 @@
 """Export for Penumbra: what comes back from a file is what F12 renders. Needs the program, built for debugging
-or named by PENUMBRA_EXE."""
+or named by PENUMBRA."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import pytest
 from lamps_of_cycles import TO_Y_UP, close, differences, place
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXE = pathlib.Path(os.environ.get("PENUMBRA_EXE", ROOT / "target" / "debug" / "penumbra"))
+EXE = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
 
 pytestmark = pytest.mark.skipif(not EXE.exists(), reason=f"{EXE} is not built")
 

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel, Vt
+from usd_looks import corner_values
 
 Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
 LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
@@ -182,17 +183,7 @@ class Stage:
         values = values.reshape(len(values), -1)
         if values.shape[1] != width:
             return None
-        counts = UsdGeom.Mesh(prim).GetFaceVertexCountsAttr().Get(self.time)
-        starts = np.concatenate([[0], np.cumsum(counts)])
-        pick = {
-            "constant": lambda face, corners: np.zeros(len(corners), int),
-            "uniform": lambda face, corners: np.full(len(corners), face),
-            "vertex": lambda face, corners: corners,
-            "varying": lambda face, corners: corners,
-            "faceVarying": lambda face, corners: np.arange(starts[face], starts[face + 1]),
-        }[interpolation]
-        picked = np.concatenate([pick(face, corners) for face, corners in faces] or [np.zeros(0, int)])
-        return values[picked] if len(picked) == 0 or picked.max() < len(values) else None
+        return corner_values(self, prim, faces, interpolation, values)
 
     def materials(self, prim, faces):
         """The materials that the faces of a mesh have."""
