@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::graph::{Atmosphere, Graph, ValueId};
-use super::{ShadowDesc, Visibility};
+use super::{Motion, ShadowDesc, Visibility};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -17,6 +17,8 @@ pub struct LightDesc {
     /// Light to world. Sizes are those of `kind`, in metres of the world: the scale of the transform
     /// does nothing but distort the cone of a spot, as in Cycles.
     pub transform: DAffine3,
+    /// The same at other times of the shutter, in the order of time; empty for what does not move.
+    pub motion: Vec<Motion<DAffine3>>,
     /// What and how much it emits.
     pub kind: LightKind,
     /// How emission varies with direction.
@@ -295,6 +297,7 @@ impl LightDesc {
             name: name.into(),
             place,
             transform,
+            motion: Vec::new(),
             kind,
             shaping: ShapingDesc::default(),
             decay: DecayDesc::default(),

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("pxr", reason="usd-core is not installed")
-from pxr import Tf, UsdGeom, UsdLux  # noqa: E402
+from pxr import Tf, Usd, UsdGeom, UsdLux  # noqa: E402
 from usd_judge import LIGHTS, Stage  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -47,6 +47,11 @@ class Answer:
         self.instances = defaultdict(list)
         for instance in values["instances"]:
             self.instances[instance["place"]].append(instance)
+
+    def shutter(self):
+        """From when to when a camera's shutter is open; `None` where it is for an instant."""
+        open_for = [camera["shutter"] for camera in self.cameras.values() if camera["shutter"][0] < camera["shutter"][1]]
+        return [min(o for o, _ in open_for), max(c for _, c in open_for)] if open_for else None
 
     def warned(self, path, *words):
         """True where something was said of the prim or one of its properties, with one of `words` in it."""
@@ -97,6 +102,7 @@ def judge_shapes(stage, answer, found):
             world = stage.world(prim)
             ours = np.reshape(instances[0]["matrix"], (4, 4))
             found.check(near(ours, world), path, f"stands at\n{ours}\nand not at\n{world}")
+            judge_motion(stage, prim, instances[0], answer, found)
         if is_mesh and faces is not None:
             judge_mesh(stage, prim, faces, instances[0], answer, found)
         if prim.GetTypeName() in ("Points", "BasisCurves") and not answer.warned(path, "value", "point", "curve"):
@@ -109,6 +115,43 @@ def judge_shapes(stage, answer, found):
         expected = [row(matrix, color) for matrix, color in expected]
         same = len(ours) == len(expected) and near(rows(ours), rows(expected), 2e-5) if ours or expected else True
         found.check(same, "/", f"{len(ours)} other instances ({sorted(left)[:5]}), not the {len(expected)} of USD")
+
+
+def judge_motion(stage, prim, ours, answer, found):
+    """Where `ours` is at other times of the shutter."""
+    path, motion, shutter = str(prim.GetPath()), ours["motion"], answer.shutter()
+    if shutter is None or stage.time == Usd.TimeCode.EarliestTime():
+        return found.check(not motion, path, "moves, though no shutter is open")
+    world = stage.world(prim)
+    if not motion:
+        stays = all(near(stage.world_at(prim, t), world) for t in np.linspace(*shutter, 9))
+        return found.check(stays, path, "does not move")
+    found.check([motion[0]["time"], motion[-1]["time"]] == shutter, path, "does not move for all of the shutter")
+    # What turns the space of the prim into that of our lights.
+    own = np.reshape(ours["matrix"], (4, 4)) @ np.linalg.inv(world)
+    for key in motion:
+        expected, matrix = own @ stage.world_at(prim, key["time"]), np.reshape(key["matrix"], (4, 4))
+        found.check(near(matrix, expected), path, f"is at\n{matrix}\nnot\n{expected} after {key['time']} frames")
+
+
+def judge_deformation(stage, prim, used, motion, answer, found):
+    """Where the points `used` of a mesh are at other times of the shutter; those of triangles without area are left out."""
+    path, shutter = str(prim.GetPath()), answer.shutter()
+    if shutter is None or stage.time == Usd.TimeCode.EarliestTime():
+        return found.check(not motion, path, "deforms, though no shutter is open")
+    times = [key["time"] for key in motion] or list(np.linspace(*shutter, 5))
+    now = stage.points_at(prim, 0)
+    for i, time in enumerate(times):
+        theirs = stage.points_at(prim, time)
+        if theirs is None:
+            return
+        if not motion:
+            found.check(near(theirs, now), path, "does not deform")
+            continue
+        ours = np.array(motion[i]["points"], dtype=np.float32).reshape(-1, 3)[used]
+        # Each of ours is one of theirs, with its own way since the frame.
+        off = np.abs(ours[:, None] - theirs[None]).max(axis=-1).min(axis=1).max()
+        found.check(off <= 1e-5 * np.abs(theirs).max(), path, f"has points {off} off after {time} frames")
 
 
 def judge_stand_ins(stage, answer, left, found):
@@ -191,6 +234,7 @@ def judge_mesh(stage, prim, faces, instance, answer, found):
             expected = -expected
         size = np.abs(area(ours[triangles].astype(float))).sum()
         found.check(np.abs(sums - expected).max() <= 1e-5 * max(size, 1e-30), path, f"faces {sums}, not {expected}")
+        judge_deformation(stage, prim, np.unique(triangles), mesh["motion"], answer, found)
         judge_primvars(stage, prim, kept, points[corners], ours[triangles].reshape(-1, 3), triangles, mesh, found)
     if prim.HasAPI(UsdLux.LightAPI):
         return
@@ -250,8 +294,10 @@ def judge_lights(stage, answer, found):
             ours /= np.linalg.norm(ours, axis=1, keepdims=True)
             expected = stage.dome_directions(prim)
             found.check(near(ours, expected), path, f"its image lies to\n{ours}\nnot\n{expected}")
+            judge_motion(stage, prim, light, answer, found)
             continue
         found.check(near(matrix, stage.world(prim)), path, f"stands at\n{matrix}\nand not at\n{stage.world(prim)}")
+        judge_motion(stage, prim, light, answer, found)
         judge_shaping(stage, prim, light, found)
 
 
@@ -280,6 +326,7 @@ def judge_cameras(stage, answer, found):
             continue
         expected = stage.camera(prim)
         found.check(near(np.reshape(camera["matrix"], (4, 4)), stage.world(prim)), path, "stands elsewhere")
+        judge_motion(stage, prim, camera, answer, found)
         for key in ("clip_near", "clip_far", "shift", "shutter", "exposure"):
             same = near(camera[key] if camera[key] is not None else math.inf, expected[key])
             found.check(same or answer.warned(path), path, f"{key} is {camera[key]}, not {expected[key]}")

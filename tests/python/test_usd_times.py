@@ -367,3 +367,46 @@ def Mesh "T" {{
         nothing_differs(path, "--interpolation", "linear", frame=frame)
     held = np.reshape(of(path, "/A/T")("--frame=4", "--interpolation", "held")[0]["matrix"], (4, 4))
     assert held[3, 0] == 0.0
+
+
+def samples(rng, value):
+    """Values at a few times of 0 to 10, some of them close together."""
+    times = sorted({round(rng.uniform(0, 10), rng.choice([0, 1, 2])) for _ in range(rng.choice([1, 2, 4, 20]))})
+    return "{ " + ", ".join(f"{time}: {value(rng)}" for time in times) + " }"
+
+
+def moving(rng, kind, name, body=""):
+    """A prim of `kind` whose transform has samples, or not."""
+    place = lambda rng: tuple(round(rng.uniform(-5, 5), 3) for _ in range(3))
+    angle, size = (lambda rng: round(rng.uniform(-180, 180), 2)), (lambda rng: round(rng.uniform(0.5, 2), 3))
+    lines, order = [], []
+    for type_, operation, value in (("double3", "translate", place), ("float", "rotateY", angle), ("float", "scaleX", size)):
+        if rng.random() < 0.5:
+            moves = rng.random() < 0.7
+            lines.append(f"{type_} xformOp:{operation}" + (f".timeSamples = {samples(rng, value)}" if moves else f" = {value(rng)}"))
+            order.append(f'"xformOp:{operation}"')
+    lines.append(f"uniform token[] xformOpOrder = [{', '.join(order)}]")
+    return f'def {kind} "{name}" {{\n' + "\n".join(lines) + f"\n{body}}}\n"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_moves_within_the_shutter_moves_as_in_openusd(tmp_path, seed):
+    rng = random.Random(seed)
+    points = lambda rng: "[" + ", ".join(str(tuple(round(rng.uniform(-3, 3), 3) for _ in range(3))) for _ in range(3)) + "]"
+    mesh = f"{TRIANGLE}point3f[] points.timeSamples = {samples(rng, points)}\n"
+    still = TRIANGLE + POINTS
+    flowing = f"{TRIANGLE}point3f[] points.timeSamples = {{ 4: {points(rng)} }}\nvector3f[] velocities.timeSamples = {{ 4: {points(rng)} }}\n"
+    (tmp_path / "asset.usda").write_text('#usda 1.0\n(\ndefaultPrim = "Asset"\n)\n' + moving(rng, "Xform", "Asset", moving(rng, "Mesh", "Inner", mesh)))
+    shared = 'def "Late" (references = @asset.usda@ (offset = 1.5; scale = 0.5)) {}\ndef "One" (instanceable = true; references = @asset.usda@) {}\n'
+    lights = ["SphereLight", "RectLight", "DiskLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1"]
+    inner = "".join(moving(rng, kind, f"L{i}") for i, kind in enumerate(lights))
+    inner += moving(rng, "Mesh", "Soft", mesh) + moving(rng, "Mesh", "Hard", still) + moving(rng, "Mesh", "Flowing", flowing)
+    open_, close = sorted(round(rng.uniform(-1, 2), 2) for _ in range(2))
+    camera = moving(rng, "Camera", "Eye", f"double shutter:open = {open_}\ndouble shutter:close = {close}\n")
+    path = tmp_path / "stage.usda"
+    path.write_text(HEAD.format("") + moving(rng, "Xform", "World", inner + camera + shared))
+    for frame in (0, 4, 5.5, 9):
+        nothing_differs(path, frame=frame)
+    answer = Answer(read(path, "--frame=5"))
+    everything = [*answer.lights.values(), *answer.cameras.values(), *(i for all_ in answer.instances.values() for i in all_)]
+    assert any(thing["motion"] for thing in everything), "nothing moves"

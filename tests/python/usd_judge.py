@@ -80,6 +80,11 @@ class Stage:
     def world(self, prim):
         return np.array(self.xforms.GetLocalToWorldTransform(prim)) @ self.to_world
 
+    def world_at(self, prim, frames):
+        """The same as many frames later."""
+        time = Usd.TimeCode(self.time.GetValue() + frames)
+        return np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(prim)) @ self.to_world
+
     def visible(self, prim):
         imageable = UsdGeom.Imageable(prim)
         if not imageable:
@@ -158,6 +163,15 @@ class Stage:
         if schema.GetVelocitiesAttr().HasAuthoredValue():
             return schema.ComputePointsAtTime(self.time, self.time)
         return schema.GetPointsAttr().Get(self.time)
+
+    def points_at(self, prim, frames):
+        """The points of `prim` as many frames later; `None` where joints move them."""
+        if UsdSkel.BindingAPI(prim).GetInheritedSkeleton():
+            return None
+        schema, time = UsdGeom.PointBased(prim), Usd.TimeCode(self.time.GetValue() + frames)
+        if schema.GetVelocitiesAttr().HasAuthoredValue():
+            return np.array(schema.ComputePointsAtTime(time, self.time), np.float32)
+        return np.array(schema.GetPointsAttr().Get(time), np.float32)
 
     def corners(self, prim, faces, name, width):
         """The primvar `name`, of `width` numbers, of every corner of `faces`; `None` where there is none that fits."""

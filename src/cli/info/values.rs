@@ -81,6 +81,10 @@ fn motion(motion: &[Motion<Vec<[f32; 3]>>]) -> Vec<Value> {
     motion.iter().map(|m| json!({ "time": m.time, "points": m.value })).collect()
 }
 
+fn poses(motion: &[Motion<DAffine3>]) -> Vec<Value> {
+    motion.iter().map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) })).collect()
+}
+
 fn attribute<T: serde::Serialize>(attribute: &Attribute<T>) -> Value {
     match attribute {
         Attribute::Point(values) => json!({ "per": "point", "values": values }),
@@ -99,9 +103,7 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
         "mesh": match instance.shape { ShapeRef::Mesh(i) => Some(i), ShapeRef::Rounds(_) => None },
         "rounds": match instance.shape { ShapeRef::Rounds(i) => Some(i), ShapeRef::Mesh(_) => None },
         "matrix": matrix(&instance.transform),
-        "motion": instance.motion.iter()
-            .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
-            .collect::<Vec<_>>(),
+        "motion": poses(&instance.motion),
         "materials": instance.materials.iter().map(material).collect::<Vec<_>>(),
         "color": instance.color,
         "visibility": visibility(instance.visibility),
@@ -168,6 +170,7 @@ fn light(light: &LightDesc, scene: &SceneDesc) -> Value {
         "name": &*light.name,
         "place": node(&light.place),
         "matrix": matrix(&light.transform),
+        "motion": poses(&light.motion),
         "kind": kind(light.kind, scene),
         "shaping": shaping(&light.shaping, scene),
         "decay": { "law": law, "smooth": light.decay.smooth, "range": range },
@@ -220,9 +223,7 @@ fn camera(camera: &CameraDesc) -> Value {
         "name": &*camera.name,
         "place": node(&camera.place),
         "matrix": matrix(&camera.transform),
-        "motion": camera.motion.iter()
-            .map(|m| json!({ "time": m.time, "matrix": matrix(&m.value) }))
-            .collect::<Vec<_>>(),
+        "motion": poses(&camera.motion),
         "projection": projection,
         "clip_near": camera.clip_near,
         "clip_far": camera.clip_far.is_finite().then_some(camera.clip_far),

@@ -76,6 +76,7 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
         name: data.name.as_str().into(),
         place,
         transform,
+        motion: Vec::new(),
         kind,
         shaping: ShapingDesc { cone, ..ShapingDesc::default() },
         decay: shader.decay,

@@ -69,8 +69,7 @@ fn gather(reading: &Reading<'_>) -> Haul {
 
 /// From when to when a camera's shutter is open, in time codes after the frame.
 fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
-    // Without a frame there is nothing to be before or after.
-    if reading.time.is_earliest_time() || render::off(reading).stands_still() {
+    if render::off(reading).stands_still() {
         return None;
     }
     let of = |found: &Found| {
@@ -80,7 +79,14 @@ fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
         (open < close).then_some([open, close])
     };
     let cameras = haul.found.iter().filter(|found| &*found.look.kind == "Camera");
-    cameras.filter_map(of).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    let shutter = cameras.filter_map(of).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+    if reading.time.is_earliest_time() {
+        let what =
+            "a camera's shutter is open, but the stage has no startTimeCode, and no frame is given: nothing moves";
+        reading.warnings.borrow_mut().push(&reading.place, what);
+        return None;
+    }
+    Some(shutter)
 }
 
 /// Variants of the prims in the root, as `--variant` takes them.

@@ -51,6 +51,10 @@ pub fn prepare(
         };
         let mut mended = Mended::default();
         let look = shadow_look::prepare(&light.links, &mut mended);
+        if light.motion.iter().any(|moved| moved.value != light.transform) {
+            mended
+                .note("it moves while the shutter is open; as in Cycles, it shines from where it stands at the frame");
+        }
         mended.tell(light, false, warnings);
         let rules = rules(&light.links, look, light.visibility);
         if let LightKind::ShadedDome { shader } = light.kind {

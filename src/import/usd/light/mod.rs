@@ -25,7 +25,7 @@ use super::images::Images;
 use super::stage::Reading;
 use super::values::Values;
 use super::walk::Placed;
-use crate::desc::{LightDesc, LightKind};
+use crate::desc::{LightDesc, LightKind, Motion};
 
 /// True for the schemas of lights with a shape of their own or none; meshes and volumes with LightAPI are
 /// shapes that emit.
@@ -60,24 +60,27 @@ impl std::ops::Deref for Light<'_> {
     }
 }
 
-/// The light at `placed`; `None`, with a warning, for one that is not rendered.
+/// The light at `placed`, with its motion; `None`, with a warning, for one that is not rendered.
 pub(super) fn read(
     reading: &Reading<'_>,
     placed: &Placed,
     images: &mut Images,
     profiles: &mut Profiles,
 ) -> Option<LightDesc> {
+    let light = still(reading, placed, images, profiles)?;
+    // What turns the prim's space into the light's own.
+    let own = placed.world.inverse() * light.transform;
+    let motion = placed.motion.iter().map(|&Motion { time, value }| Motion { time, value: value * own });
+    Some(LightDesc { motion: motion.filter(|moved| moved.value.is_finite()).collect(), ..light })
+}
+
+/// The light at `placed` as it is at the frame.
+fn still(reading: &Reading<'_>, placed: &Placed, images: &mut Images, profiles: &mut Profiles) -> Option<LightDesc> {
     if !placed.visible {
         return None;
     }
     let light = Light { values: Values { reading, prim: &placed.prim, path: &placed.path }, placed };
-    let told_of_motion = || {
-        if !placed.motion.is_empty() {
-            light.values.warn("it moves while the shutter is open: rendered where it stands at the frame");
-        }
-    };
     if let Some(stamped) = stamped::lamp(&light, images, profiles) {
-        told_of_motion();
         return stamped;
     }
     let (kind, transform) = match &*placed.kind {
@@ -96,7 +99,6 @@ pub(super) fn read(
     };
     let (shaping, factor) = shaping::read(&light, &kind, profiles);
     let name = placed.path.name().unwrap_or_default();
-    told_of_motion();
     Some(LightDesc {
         shaping,
         visibility: rules::visibility(&light.values, matches!(kind, LightKind::Dome { .. })),

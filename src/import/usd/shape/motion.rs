@@ -47,13 +47,13 @@ pub(super) fn read(
     let now = reading.time.value();
     let [open, close] = shutter.map(|frame| now + frame);
     let deforms = deformer.and_then(|deformer| deformer.samples(open, close));
-    if deforms.is_none() && !attribute.value_might_be_time_varying().unwrap_or(false) {
-        return Vec::new();
-    }
     if deformer.is_none()
         && let Some(flowing) = flowing(reading, prim, count)
     {
         return shutter.map(|time| Motion { time, value: flowing.at(TimeCode::new(now + time)) }).into();
+    }
+    if deforms.is_none() && !attribute.value_might_be_time_varying().unwrap_or(false) {
+        return Vec::new();
     }
     let read = |time: f64| {
         let time = TimeCode::new(time);

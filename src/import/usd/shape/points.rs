@@ -47,6 +47,9 @@ pub(super) fn widths(reading: &Reading<'_>, prim: &Prim, primvars: &mut Primvars
     if widths.is_none() {
         reading.warn(prim.path(), "it has no widths; 1 is used, as Hydra does");
     }
+    if reading.shutter.get().is_some() && attribute.value_might_be_time_varying().unwrap_or(false) {
+        reading.warn(prim.path(), "its widths change while the shutter is open; those of the frame are used");
+    }
     widths
 }
 

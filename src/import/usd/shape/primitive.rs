@@ -3,15 +3,17 @@
 use std::mem::Discriminant;
 
 use openusd::tf::Token;
-use openusd::usd::Prim;
+use openusd::usd::{Prim, TimeCode};
 use openusd_schemas::geom::Primvar;
 
+use super::super::retime;
 use super::super::stage::Reading;
 use super::finish::{Channels, Surface};
 use super::polygons::Triangles;
 use super::primvar::{self, Channel, Counts, Primvars};
 use super::profile::{Axis, CUBE, PLANE, Solid};
 use super::{Built, Wants};
+use crate::desc::Motion;
 use crate::error::{Place, Warnings};
 use openusd_schemas::geom::Interpolation;
 
@@ -19,6 +21,7 @@ use openusd_schemas::geom::Interpolation;
 pub(in super::super) struct Primitive {
     shape: Shape,
     axis: Axis,
+    motion: Vec<Motion<Shape>>,
     pub(super) primvars: Primvars,
 }
 
@@ -35,62 +38,34 @@ enum Shape {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct Likeness(Discriminant<Shape>, Axis, [u64; 3]);
 
-/// The primitive `prim` of schema `kind`; `None` for other kinds, and, with a warning, for one without
-/// extent.
+/// The primitive `prim` of schema `kind`, and its sizes while the shutter is open; `None` for other kinds, and,
+/// with a warning, for one without extent.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Primitive> {
-    let lacking = std::cell::RefCell::new(Vec::new());
-    // A size below 0 means nothing in the schema; Hydra draws the shape inside out.
-    let size = |name: &'static str| {
-        reading.value::<f64>(prim, name).filter(|v| v.is_finite()).map_or_else(
-            || {
-                lacking.borrow_mut().push(name);
-                0.0
-            },
-            f64::abs,
-        )
-    };
-    let (shape, has_extent) = match kind {
-        "Cube" => {
-            let size = size("size");
-            (Shape::Cube { size }, size > 0.0)
+    let (mut lacking, mut negative) = (Vec::new(), Vec::new());
+    let shape = shape(kind, |name| match reading.value::<f64>(prim, name).filter(|v| v.is_finite()) {
+        Some(size) => {
+            if size < 0.0 {
+                negative.push(name);
+            }
+            size.abs()
         }
-        "Sphere" => {
-            let radius = size("radius");
-            (Shape::Sphere { radius }, radius > 0.0)
+        None => {
+            lacking.push(name);
+            0.0
         }
-        "Cylinder" | "Cylinder_1" | "Cone" => {
-            let [bottom, top] = match kind {
-                "Cylinder" => [size("radius"); 2],
-                "Cone" => [size("radius"), 0.0],
-                _ => [size("radiusBottom"), size("radiusTop")],
-            };
-            let height = size("height");
-            (Shape::Cylinder { bottom, top, height }, height > 0.0 && bottom.max(top) > 0.0)
-        }
-        "Capsule" | "Capsule_1" => {
-            let [bottom, top] = match kind {
-                "Capsule" => [size("radius"); 2],
-                _ => [size("radiusBottom"), size("radiusTop")],
-            };
-            let height = size("height");
-            let has_extent = bottom.max(top) > 0.0 && (height > 0.0 || bottom == top);
-            (Shape::Capsule { bottom, top, height }, has_extent)
-        }
-        "Plane" => {
-            let (width, length) = (size("width"), size("length"));
-            (Shape::Plane { width, length }, width > 0.0 && length > 0.0)
-        }
-        _ => return None,
-    };
-    let mut lacking = lacking.into_inner();
-    lacking.dedup();
+    })?;
     if !lacking.is_empty() {
         // Blocked, of another type, or not finite.
         let what = format!("there is no number in its {}; the shape is left out", lacking.join(" and "));
         reading.warn(prim.path(), what);
         return None;
     }
-    if !has_extent {
+    if !negative.is_empty() {
+        // It means nothing in the schema; Hydra draws the shape inside out.
+        let what = format!("its {} is negative; taken without the sign", negative.join(" and "));
+        reading.warn(prim.path(), what);
+    }
+    if !shape.has_extent() {
         reading.warn(prim.path(), "the shape has no extent; it is left out");
         return None;
     }
@@ -98,7 +73,84 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         Shape::Cube { .. } | Shape::Sphere { .. } => Axis::Z,
         _ => axis(reading, prim),
     };
-    Some(Primitive { shape, axis, primvars: primvar::read(reading, prim, inherited) })
+    let motion = motion(reading, prim, kind);
+    Some(Primitive { shape, axis, motion, primvars: primvar::read(reading, prim, inherited) })
+}
+
+/// The shape of schema `kind` whose numbers `size` gives by name; `None` for other kinds.
+fn shape(kind: &str, mut size: impl FnMut(&'static str) -> f64) -> Option<Shape> {
+    Some(match kind {
+        "Cube" => Shape::Cube { size: size("size") },
+        "Sphere" => Shape::Sphere { radius: size("radius") },
+        "Cylinder" | "Cylinder_1" | "Cone" | "Capsule" | "Capsule_1" => {
+            let [bottom, top] = match kind {
+                "Cone" => [size("radius"), 0.0],
+                "Cylinder_1" | "Capsule_1" => [size("radiusBottom"), size("radiusTop")],
+                _ => [size("radius"); 2],
+            };
+            let height = size("height");
+            match kind.starts_with("Capsule") {
+                true => Shape::Capsule { bottom, top, height },
+                false => Shape::Cylinder { bottom, top, height },
+            }
+        }
+        "Plane" => Shape::Plane { width: size("width"), length: size("length") },
+        _ => return None,
+    })
+}
+
+/// The shape at the ends of the shutter and at the samples between them, in frames after the one that is read;
+/// empty for one that keeps its size.
+fn motion(reading: &Reading<'_>, prim: &Prim, kind: &str) -> Vec<Motion<Shape>> {
+    let Some(shutter) = reading.shutter.get() else { return Vec::new() };
+    let mut sizes = Vec::new();
+    shape(kind, |name| {
+        sizes.push(prim.attribute(name));
+        0.0
+    });
+    sizes.retain(|size| size.value_might_be_time_varying().unwrap_or(false));
+    if sizes.is_empty() {
+        return Vec::new();
+    }
+    let now = reading.time.value();
+    let [open, close] = shutter.map(|frame| now + frame);
+    let mut times = retime::samples(reading, &sizes, open, close);
+    times.extend([open, close]);
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let at = |time: f64| {
+        let moved = |name: &str| reading.value_of::<f64>(&prim.attribute(name), TimeCode::new(time));
+        let size = |name| moved(name).or_else(|| reading.value(prim, name)).unwrap_or(f64::NAN).abs();
+        let value = shape(kind, size).filter(Shape::has_extent)?;
+        Some(Motion { time: time - now, value })
+    };
+    let motion: Option<Vec<_>> = times.into_iter().map(at).collect();
+    motion.unwrap_or_else(|| {
+        reading.warn(prim.path(), "it has no extent for a part of the shutter; it keeps its size");
+        Vec::new()
+    })
+}
+
+impl Shape {
+    fn has_extent(&self) -> bool {
+        match *self {
+            Self::Cube { size } => size > 0.0,
+            Self::Sphere { radius } => radius > 0.0,
+            Self::Cylinder { bottom, top, height } => height > 0.0 && bottom.max(top) > 0.0,
+            Self::Capsule { bottom, top, height } => bottom.max(top) > 0.0 && (height > 0.0 || bottom == top),
+            Self::Plane { width, length } => width > 0.0 && length > 0.0,
+        }
+    }
+
+    fn solid(&self, axis: Axis) -> Solid {
+        match *self {
+            Self::Cube { size } => Solid::cube(size),
+            Self::Sphere { radius } => Solid::sphere(radius).along(axis),
+            Self::Cylinder { bottom, top, height } => Solid::cylinder(bottom, top, height).along(axis),
+            Self::Capsule { bottom, top, height } => Solid::capsule(bottom, top, height).along(axis),
+            Self::Plane { width, length } => Solid::plane(width, length, axis),
+        }
+    }
 }
 
 fn axis(reading: &Reading<'_>, prim: &Prim) -> Axis {
@@ -123,18 +175,18 @@ impl Primitive {
             Shape::Plane { width, length } => [width, length, 0.0],
         };
         let likeness = Likeness(std::mem::discriminant(&self.shape), self.axis, sizes.map(f64::to_bits));
-        self.primvars.is_empty().then_some(likeness)
+        (self.motion.is_empty() && self.primvars.is_empty()).then_some(likeness)
     }
 
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { shape, axis, primvars } = self;
-        let solid = match shape {
-            Shape::Cube { size } => Solid::cube(size),
-            Shape::Sphere { radius } => Solid::sphere(radius).along(axis),
-            Shape::Cylinder { bottom, top, height } => Solid::cylinder(bottom, top, height).along(axis),
-            Shape::Capsule { bottom, top, height } => Solid::capsule(bottom, top, height).along(axis),
-            Shape::Plane { width, length } => Solid::plane(width, length, axis),
-        };
+        let Self { shape, axis, motion, primvars } = self;
+        let solid = shape.solid(axis);
+        let moved = |&Motion { time, ref value }: &Motion<Shape>| Motion { time, value: value.solid(axis).points };
+        let mut motion: Vec<_> = motion.iter().map(moved).collect();
+        if motion.iter().any(|moved| moved.value.len() != solid.points.len()) {
+            warnings.push(place, "an end of it comes to a point within the shutter; it keeps its size");
+            motion.clear();
+        }
         let mut channels = match shape {
             Shape::Cube { .. } => at_corners(&CUBE, 8, primvars, wants, place, warnings),
             Shape::Plane { .. } => at_corners(&PLANE, 4, primvars, wants, place, warnings),
@@ -147,7 +199,8 @@ impl Primitive {
         if !matches!(shape, Shape::Cube { .. } | Shape::Plane { .. }) {
             channels.make_constant();
         }
-        let mesh = solid_surface(solid, channels).finish(wants, place, warnings)?;
+        let surface = Surface { motion, ..solid_surface(solid, channels) };
+        let mesh = surface.finish(wants, place, warnings)?;
         Some(Built::Mesh(mesh))
     }
 }
@@ -193,6 +246,7 @@ pub(super) fn solid_surface(solid: Solid, mut channels: Channels) -> Surface {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::light::testing::Stage;
     use super::super::testing::built;
     use super::*;
     use crate::desc::{Attribute, MeshDesc};
@@ -261,6 +315,43 @@ mod tests {
                 assert!(grey != 0 || point == first, "{axis}: {point}");
             }
         }
+    }
+
+    #[test]
+    fn a_size_that_changes_within_the_shutter_is_motion() {
+        let moving = |kind: &str, sizes: &str, shutter| {
+            let stage = Stage::new("startTimeCode = 0\nendTimeCode = 1", &format!("def {kind} \"S\" {{ {sizes} }}"));
+            stage.with("/S", |reading, placed| {
+                reading.shutter.set(shutter);
+                let shape = read(reading, &placed.prim, &[], kind).unwrap();
+                let Built::Mesh(mesh) =
+                    shape.build(&Wants::default(), &Place::default(), &mut reading.warnings.borrow_mut()).unwrap()
+                else {
+                    panic!("a solid is a mesh")
+                };
+                mesh
+            })
+        };
+        let radius = "double radius.timeSamples = { 0: 1, 0.25: 2, 1: 3 }";
+        assert!(moving("Sphere", radius, None).motion.is_empty());
+        assert!(moving("Sphere", "double radius = 2", Some([0.0, 0.5])).motion.is_empty());
+        for kind in ["Sphere", "Cylinder", "Cone"] {
+            let mesh = moving(kind, radius, Some([0.0, 0.5]));
+            let wide = |points: &[[f32; 3]]| points.iter().map(|p| p[0]).fold(0.0, f32::max);
+            let found: Vec<_> = mesh.motion.iter().map(|m| (m.time, wide(&m.value) / wide(&mesh.points))).collect();
+            let expected = [(0.0, 1.0), (0.25, 2.0), (0.5, 7.0 / 3.0)];
+            assert_eq!(found.len(), 3);
+            for (found, expected) in found.iter().zip(expected) {
+                assert!(found.0 == expected.0 && (found.1 - expected.1).abs() < 1e-6, "{kind}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_negative_size_is_told() {
+        let (mesh, told) = shape("Sphere", "double radius = -2");
+        assert_eq!(mesh.points.iter().map(|p| p[2]).fold(0.0, f32::max), 2.0);
+        assert!(told.iter().any(|told| told.contains("radius is negative")), "{told:?}");
     }
 
     /// Hydra's spheres have a number of faces that nothing but Hydra tells.
