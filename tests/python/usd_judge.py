@@ -164,10 +164,12 @@ class Stage:
             return schema.ComputePointsAtTime(self.time, self.time)
         return schema.GetPointsAttr().Get(self.time)
 
+    def has_skeleton(self, prim):
+        """True for what joints move, which is baked for the frame alone."""
+        return bool(UsdSkel.BindingAPI(prim).GetInheritedSkeleton())
+
     def points_at(self, prim, frames):
-        """The points of `prim` as many frames later; `None` where joints move them."""
-        if UsdSkel.BindingAPI(prim).GetInheritedSkeleton():
-            return None
+        """The points of `prim` as many frames later; those of a skeleton are not known then."""
         schema, time = UsdGeom.PointBased(prim), Usd.TimeCode(self.time.GetValue() + frames)
         if schema.GetVelocitiesAttr().HasAuthoredValue():
             return np.array(schema.ComputePointsAtTime(time, self.time), np.float32)
