@@ -19,6 +19,8 @@ struct Parts {
     numbers: Vec<Range<usize>>,
     quoted: Vec<Range<usize>>,
     paths: Vec<Range<usize>>,
+    /// Names of layers.
+    assets: Vec<Range<usize>>,
     words: Vec<Range<usize>>,
     /// Insides of brackets.
     arrays: Vec<Range<usize>>,
@@ -47,6 +49,7 @@ impl Parts {
             let next = match bytes[at] {
                 b'"' => until(at, &|b| b == b'"') + 1,
                 b'<' => until(at, &|b| b == b'>') + 1,
+                b'@' => until(at, &|b| b == b'@') + 1,
                 b'-' | b'.' | b'0'..=b'9' => until(at, &|b| !b.is_ascii_alphanumeric() && b != b'.' && b != b'-'),
                 b if b.is_ascii_alphabetic() => until(at, &|b| !b.is_ascii_alphanumeric() && b != b':' && b != b'_'),
                 _ => at + 1,
@@ -54,6 +57,7 @@ impl Parts {
             match bytes[at] {
                 b'"' => parts.quoted.push(at..next),
                 b'<' => parts.paths.push(at..next),
+                b'@' => parts.assets.push(at..next),
                 b'-' | b'.' | b'0'..=b'9' => parts.numbers.push(at..next),
                 b if b.is_ascii_alphabetic() => parts.words.push(at..next),
                 b'[' => open = Some(at + 1),
@@ -160,6 +164,9 @@ fn mutate_text(text: &mut String, rng: &mut Rng) {
             let of = if kind == 9 { &parts.quoted } else { &parts.paths };
             (rng.one(of).clone(), text[rng.one(of).clone()].into())
         }
+        11 if !parts.assets.is_empty() && rng.below(2) == 0 => {
+            (rng.one(&parts.assets).clone(), text[rng.one(&parts.assets).clone()].into())
+        }
         11 if !parts.words.is_empty() => (rng.one(&parts.words).clone(), text[rng.one(&parts.words).clone()].into()),
         12 if !parts.words.is_empty() => {
             let types =
@@ -213,12 +220,59 @@ fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
-/// Keeps a file that does harm where it can be looked at.
+/// What reading damaged stages came to.
+struct Toll {
+    seed: u64,
+    cases: u64,
+    accepted: u64,
+    harm: Vec<String>,
+    slowest: Duration,
+}
+
+impl Toll {
+    fn new(seed: u64, cases: u64) -> Self {
+        Self { seed, cases, accepted: 0, harm: Vec::new(), slowest: Duration::ZERO }
+    }
+
+    /// Reads the stage at `path`; a folder with all that it needs is kept where that does harm.
+    fn read(&mut self, path: &Path, case: u64, options: &ImportOptions) {
+        let start = Instant::now();
+        let said = match std::panic::catch_unwind(|| try_load(path, options).map(drop)) {
+            Ok(Ok(())) => {
+                self.accepted += 1;
+                None
+            }
+            // The door makes an error of a panic; here it stays one.
+            Ok(Err(error)) if error.to_string().contains("broke down") => Some(error.to_string()),
+            Ok(Err(_)) => None,
+            Err(_) => Some("panics".into()),
+        };
+        let took = start.elapsed();
+        let said = said.or_else(|| (took > Duration::from_secs(4)).then(|| format!("takes {took:?}")));
+        if let Some(said) = said {
+            self.harm.push(format!("{said}: {}", keep(path, case)));
+        }
+        self.slowest = self.slowest.max(took);
+    }
+
+    fn judge(self) {
+        let Self { seed, cases, accepted, harm, slowest } = self;
+        println!("{accepted} of {cases} were read, the slowest in {slowest:?}");
+        assert!(harm.is_empty(), "of {cases} from seed {seed}:\n{}", harm.join("\n"));
+        // Most of the damage has to get past the parser, or nothing is tested.
+        assert!(accepted * 4 > cases, "{accepted} of {cases} were read");
+    }
+}
+
+/// Keeps the folder of a stage that does harm where it can be looked at; its path.
 fn keep(path: &Path, case: u64) -> String {
-    let name = format!("usd-mutation-{case}.{}", path.extension().unwrap_or_default().display());
-    let kept = std::env::temp_dir().join(name);
-    std::fs::copy(path, &kept).unwrap();
-    kept.display().to_string()
+    let kept = std::env::temp_dir().join(format!("usd-mutation-{case}"));
+    std::fs::create_dir_all(&kept).unwrap();
+    for file in std::fs::read_dir(path.parent().unwrap()).unwrap() {
+        let file = file.unwrap().path();
+        std::fs::copy(&file, kept.join(file.file_name().unwrap())).unwrap();
+    }
+    kept.join(path.file_name().unwrap()).display().to_string()
 }
 
 #[test]
@@ -231,12 +285,9 @@ fn no_damage_panics() {
     for file in ["t.png", "lamp.ies"] {
         std::fs::copy(corpus().join(file), dir.path().join(file)).unwrap();
     }
-    let seed = number("PENUMBRA_SEED", 1);
-    let mut rng = Rng(seed | 1 << 40);
-    let (mut accepted, mut harm) = (0_u64, Vec::new());
-    let cases = number("PENUMBRA_MUTATIONS", 100);
-    let mut slowest = Duration::ZERO;
-    for case in 0..cases {
+    let mut toll = Toll::new(number("PENUMBRA_SEED", 1), number("PENUMBRA_MUTATIONS", 100));
+    let mut rng = Rng(toll.seed | 1 << 40);
+    for case in 0..toll.cases {
         let (ending, bytes) = match rng.below(8) {
             kind @ (0 | 1) => {
                 let mut bytes = [&binary, &package][kind].clone();
@@ -252,23 +303,29 @@ fn no_damage_panics() {
         let path = dir.path().join("stage").with_extension(ending);
         std::fs::write(&path, &bytes).unwrap();
         let options = if rng.below(2) == 0 { ImportOptions::default() } else { at_frame([0.0, 7.5][rng.below(2)]) };
-        let start = Instant::now();
-        match std::panic::catch_unwind(|| try_load(&path, &options).map(drop)) {
-            Ok(Ok(())) => accepted += 1,
-            // The door makes an error of a panic; here it stays one.
-            Ok(Err(error)) if error.to_string().contains("broke down") => {
-                harm.push(format!("{error}: {}", keep(&path, case)));
-            }
-            Ok(Err(_)) => {}
-            Err(_) => harm.push(format!("panics: {}", keep(&path, case))),
-        }
-        if start.elapsed() > Duration::from_secs(4) {
-            harm.push(format!("takes {:?}: {}", start.elapsed(), keep(&path, case)));
-        }
-        slowest = slowest.max(start.elapsed());
+        toll.read(&path, case, &options);
     }
-    println!("{accepted} of {cases} were read, the slowest in {slowest:?}");
-    assert!(harm.is_empty(), "of {cases} from seed {seed}:\n{}", harm.join("\n"));
-    // Most of the damage has to get past the parser, or nothing is tested.
-    assert!(accepted * 4 > cases, "{accepted} of {cases} were read");
+    toll.judge();
+}
+
+/// The same of one of the layers that make up a stage, so that arcs lead elsewhere.
+#[test]
+fn no_damage_to_its_layers_panics() {
+    let stages = [&["composition.usda", "sub.usda", "triangle.usda"][..], &["implied.usda", "implied_asset.usda"]];
+    let dir = tempfile::tempdir().unwrap();
+    let mut toll = Toll::new(number("PENUMBRA_SEED", 1), number("PENUMBRA_MUTATIONS", 100));
+    let mut rng = Rng(toll.seed | 1 << 41);
+    for case in 0..toll.cases {
+        let layers = rng.one(&stages);
+        let damaged = rng.below(layers.len());
+        for (i, name) in layers.iter().enumerate() {
+            let mut text = std::fs::read_to_string(stage(name)).unwrap();
+            if i == damaged {
+                (0..1 + rng.below(3)).for_each(|_| mutate_text(&mut text, &mut rng));
+            }
+            std::fs::write(dir.path().join(name), text).unwrap();
+        }
+        toll.read(&dir.path().join(layers[0]), case, &at_frame(7.5));
+    }
+    toll.judge();
 }
