@@ -126,14 +126,19 @@ trait Value: Sized {
     fn show(&self) -> String;
 }
 
-fn in_range<T: PartialOrd + Display>(value: T, min: T, max: T) -> Result<T, String> {
-    if min <= value && value <= max { Ok(value) } else { Err(format!("must be from {min} to {max}")) }
+/// `unbounded` is the largest number of its type, which as a limit is none.
+fn in_range<T: PartialOrd + Display>(value: T, min: T, max: T, unbounded: T) -> Result<T, String> {
+    match (min <= value && value <= max, max < unbounded) {
+        (true, _) => Ok(value),
+        (false, true) => Err(format!("must be from {min} to {max}")),
+        (false, false) => Err(format!("must be a number of {min} or more")),
+    }
 }
 
 impl Value for u64 {
     fn parse(text: &str, kind: Kind) -> Result<Self, String> {
         let value = text.parse().map_err(|_| "must be a whole number, not negative".to_string())?;
-        if let Kind::Int { min, max } = kind { in_range(value, min, max) } else { Ok(value) }
+        if let Kind::Int { min, max } = kind { in_range(value, min, max, Self::MAX) } else { Ok(value) }
     }
     fn show(&self) -> String {
         self.to_string()
@@ -152,7 +157,7 @@ impl Value for u32 {
 impl Value for f64 {
     fn parse(text: &str, kind: Kind) -> Result<Self, String> {
         let value: Self = text.parse().map_err(|_| "must be a number".to_string())?;
-        if let Kind::Float { min, max } = kind { in_range(value, min, max) } else { Ok(value) }
+        if let Kind::Float { min, max } = kind { in_range(value, min, max, Self::MAX) } else { Ok(value) }
     }
     fn show(&self) -> String {
         self.to_string()

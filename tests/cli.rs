@@ -319,6 +319,26 @@ fn info_says_what_was_read() {
     assert_eq!(json["cameras"][0]["fov_y_deg"].as_f64().unwrap().round(), 46.0);
 }
 
+/// Of a scene that never comes there is nothing to save.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_while_the_scene_is_read_ends_at_once() {
+    let folder = Folder::new();
+    let scene = folder.path("pipe.gltf");
+    assert!(Command::new("mkfifo").arg(&scene).status().unwrap().success());
+    let out = folder.path("out.exr");
+    let args = ["render", text(&scene), "-o", text(&out)];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_penumbra")).args(args).stderr(Stdio::piped()).spawn().unwrap();
+    // Opens once the program has the other end; it waits for bytes then.
+    let writer = std::fs::OpenOptions::new().write(true).open(&scene).unwrap();
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    drop(writer);
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut said).unwrap();
+    assert!(said.contains("nothing to save") && !out.exists(), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_saves_what_is_there() {

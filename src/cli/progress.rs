@@ -12,9 +12,16 @@ use super::say;
 /// Set by the first Ctrl-C; the second one ends the process.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
+/// True while there may be something to save.
+static RENDERING: AtomicBool = AtomicBool::new(false);
+
 /// Makes Ctrl-C stop the render instead of the process, and a second one the process.
 pub fn catch_interrupts() {
     let handler = || {
+        if !RENDERING.load(Ordering::SeqCst) {
+            say::err("\ninterrupted before the first sample: nothing to save");
+            std::process::exit(i32::from(super::INTERRUPTED));
+        }
         if INTERRUPTED.swap(true, Ordering::SeqCst) {
             say::err("discarded");
             std::process::exit(i32::from(super::INTERRUPTED));
@@ -25,6 +32,11 @@ pub fn catch_interrupts() {
     if let Err(error) = ctrlc::set_handler(handler) {
         say::err(format!("warning: Ctrl-C will lose the render: {error}"));
     }
+}
+
+/// From now on, or no longer, Ctrl-C stops a render and has it saved.
+pub fn rendering(is_rendering: bool) {
+    RENDERING.store(is_rendering, Ordering::SeqCst);
 }
 
 /// True once Ctrl-C was pressed.

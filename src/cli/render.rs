@@ -13,7 +13,7 @@ use penumbra::scene::prepare;
 use penumbra::settings::{SETTINGS, Settings};
 
 use super::files::{Files, save};
-use super::progress::{Reporter, catch_interrupts, clock, interrupted};
+use super::progress::{Reporter, catch_interrupts, clock, interrupted, rendering};
 use super::{Outcome, environment, say, scene};
 
 pub fn command() -> Command {
@@ -99,6 +99,9 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     catch_interrupts();
     let mut told = Warnings::new();
     for frame in frames {
+        if interrupted() {
+            return Ok(Outcome::Interrupted);
+        }
         if let Outcome::Interrupted = render_frame(args, &settings, frame, &mut told)? {
             return Ok(Outcome::Interrupted);
         }
@@ -156,11 +159,7 @@ fn render_frame(
     let Some(Files { out, preview }) = files else {
         return sample.map_or(Ok(Outcome::Done), |&[x, y, index]| debug_sample(scene, settings, x, y, index));
     };
-    if interrupted() {
-        say::err("interrupted before the first sample: nothing to save");
-        return Ok(Outcome::Interrupted);
-    }
-
+    rendering(true);
     let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"), &out, frame);
     let rendered = penumbra::render::render(scene, settings, &reporter);
     reporter.finish();
@@ -190,6 +189,7 @@ fn render_frame(
         say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
         return Ok(Outcome::Interrupted);
     }
+    rendering(false);
     let [width, height] = scene.size;
     say::err(format!("{}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", out.display(), prepared.camera));
     Ok(Outcome::Done)

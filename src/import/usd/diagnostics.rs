@@ -4,6 +4,7 @@ use openusd::pcp::{ArcType, CompositionDiagnostic};
 use openusd::sdf;
 
 use super::stage::Reading;
+use super::wording::plain;
 use crate::error::Place;
 
 /// Tells of everything that composition left out so far.
@@ -44,11 +45,15 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
             (Some(introduced_by), Some(site_path), what)
         }
         D::MalformedLayer { asset_path, arc, introduced_by, site_path, reason } => {
-            let what = format!("the {} layer @{asset_path}@ can't be read ({reason}); it is left out", arc_name(*arc));
+            let what = format!(
+                "the {} layer @{asset_path}@ can't be read ({}); it is left out",
+                arc_name(*arc),
+                plain(reason)
+            );
             (Some(introduced_by), Some(site_path), what)
         }
         D::UnreadableClip { asset_path, prim_path, reason, .. } => {
-            let what = format!("the value clip @{asset_path}@ can't be read ({reason}); it is left out");
+            let what = format!("the value clip @{asset_path}@ can't be read ({}); it is left out", plain(reason));
             (None, Some(prim_path), what)
         }
         D::UnresolvedPrimPath { arc, target_layer, prim_path, introduced_by, site_path } => {
@@ -63,7 +68,8 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
             (Some(introduced_by), None, format!("the sublayer @{asset_path}@ is not found; it is left out"))
         }
         D::MalformedSublayer { asset_path, introduced_by, reason } => {
-            (Some(introduced_by), None, format!("the sublayer @{asset_path}@ can't be read ({reason}); it is left out"))
+            let what = format!("the sublayer @{asset_path}@ can't be read ({}); it is left out", plain(reason));
+            (Some(introduced_by), None, what)
         }
         D::SublayerCycle { root_layer, seen_layer } => {
             (Some(root_layer), None, format!("is its own sublayer through @{seen_layer}@; that is left out"))

@@ -76,6 +76,10 @@ impl Resolver for Files {
     }
 
     fn create_identifier(&self, asset_path: &str, anchor: Option<&ResolvedPath>) -> String {
+        // An address stands for itself; as a path it would lose a slash.
+        if asset_path.contains("://") {
+            return asset_path.into();
+        }
         self.inner.create_identifier(asset_path, anchor)
     }
 

@@ -54,6 +54,7 @@ mod units;
 mod values;
 mod variants;
 mod walk;
+mod wording;
 mod xform;
 
 use std::path::Path;

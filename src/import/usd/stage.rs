@@ -17,7 +17,7 @@ use super::files::Files;
 use super::layer::{Kept, Met, Site};
 use super::retime::Retime;
 use super::units::Units;
-use super::{cycles, diagnostics, render, skel, variants};
+use super::{cycles, diagnostics, render, skel, variants, wording};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::{Interpolation, Purpose};
 use crate::math::DAffine3;
@@ -83,7 +83,8 @@ impl<'a> Reading<'a> {
         };
         let builder = Stage::builder().interpolation_type(interpolation);
         let opened = builder.resolver(files).schema_registry(schemas).open(&path.to_string_lossy());
-        let stage = opened.map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", chain(&e))))?;
+        let stage = opened
+            .map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", wording::plain(&chain(&e)))))?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);
         let units = Units::of_root(&stage, &place, &mut warnings);

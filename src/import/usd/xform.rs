@@ -85,7 +85,12 @@ impl Xform {
                 None => (false, entry.clone()),
             };
             // As in OpenUSD, an operation without its attribute does nothing.
-            if names.contains(&name) {
+            if !names.contains(&name) {
+                reading.warn(
+                    prim.path(),
+                    format!("its xformOpOrder names {name}, which it does not have; that is left out"),
+                );
+            } else {
                 let attribute = prim.attribute(name);
                 let spline = reading.spline(&attribute);
                 let retime = Retime::of(reading, &attribute).filter(|_| spline.is_none());

@@ -1,6 +1,7 @@
 //! Text layers, mended word by word. Lines stay where they are, so that what the crate says of them is true
 //! of the file.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::Mended;
@@ -10,12 +11,13 @@ use super::names;
 
 /// `text` in the crate's words; `None` where it is in them already.
 pub(super) fn mend(text: &[u8]) -> Option<Mended> {
-    let (changes, told, scopes) = Default::default();
+    let (changes, told) = Default::default();
+    let scopes = vec![Scope::default()];
     let mut mender = Mender { text, changes, splines: false, renamed: false, told, scopes };
     mender.header();
     mender.read();
     let Mender { mut changes, splines, renamed, told, .. } = mender;
-    if changes.is_empty() {
+    if changes.is_empty() && told.is_empty() {
         return None;
     }
     changes.sort_by_key(|(at, _)| at.start);
@@ -37,12 +39,21 @@ struct Mender<'a> {
     splines: bool,
     renamed: bool,
     told: Vec<(String, String)>,
-    /// Names of the prims that are open; `None` for other braces.
-    scopes: Vec<Option<String>>,
+    /// What is open, the root first.
+    scopes: Vec<Scope<'a>>,
 }
 
-impl Mender<'_> {
-    fn word(&self, token: &Token) -> &[u8] {
+/// Between braces.
+#[derive(Default)]
+struct Scope<'a> {
+    /// Of the prim whose they are; `None` for others.
+    name: Option<String>,
+    /// Names of the prims in it.
+    prims: HashSet<&'a [u8]>,
+}
+
+impl<'a> Mender<'a> {
+    fn word(&self, token: &Token) -> &'a [u8] {
         &self.text[token.at.clone()]
     }
 
@@ -84,11 +95,21 @@ impl Mender<'_> {
                 Kind::Number => self.number(&token),
                 Kind::Sign(b'(') => round += 1,
                 Kind::Sign(b')') => round = round.saturating_sub(1),
-                Kind::Sign(b'{') => self.scopes.push(if round == 0 { name.take() } else { None }),
-                Kind::Sign(b'}') => _ = self.scopes.pop(),
+                Kind::Sign(b'{') => {
+                    let name = if round == 0 { name.take() } else { None };
+                    self.scopes.push(Scope { name, ..Scope::default() });
+                }
+                // The root has none.
+                Kind::Sign(b'}') if self.scopes.len() > 1 => _ = self.scopes.pop(),
                 Kind::Quoted if round == 0 && before.iter().flatten().any(|word| self.is_prim(word)) => {
-                    let quoted = String::from_utf8_lossy(self.word(&token)).into_owned();
-                    name = Some(quoted.trim_matches(['"', '\'']).to_string());
+                    let word = self.word(&token);
+                    let prim = String::from_utf8_lossy(word).trim_matches(['"', '\'']).to_string();
+                    if !self.scopes.last_mut().is_none_or(|scope| scope.prims.insert(word)) {
+                        let what =
+                            "stands twice in its layer, which OpenUSD refuses; what the later one says goes first";
+                        self.told.push((format!("{}/{prim}", self.path()), what.into()));
+                    }
+                    name = Some(prim);
                 }
                 Kind::Word => match (self.word(&token), sign_before) {
                     (b"spline", b'.') => self.spline(&mut tokens),
@@ -247,7 +268,7 @@ impl Mender<'_> {
     }
 
     fn path(&self) -> String {
-        self.scopes.iter().flatten().flat_map(|name| ["/", name.as_str()]).collect()
+        self.scopes.iter().filter_map(|scope| scope.name.as_deref()).flat_map(|name| ["/", name]).collect()
     }
 }
 
@@ -320,6 +341,19 @@ mod tests {
         let text = "def \"A\" (\n customData = { string b = \"def\" }\n) {\n over \"B\" { }\n def Mesh \"C\" {\n int[] z = edit [append [1]]\n double w.timeSamples = { 1: 2 }\n}\n}";
         let mended = mend(text.as_bytes()).unwrap();
         assert_eq!(mended.told.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>(), ["/A/C.z"]);
+    }
+
+    #[test]
+    fn a_prim_that_stands_twice_is_told() {
+        let twice = |text: &str| -> Vec<String> {
+            mend(text.as_bytes())
+                .map_or_else(Vec::new, |mended| mended.told.into_iter().map(|(path, _)| path).collect())
+        };
+        let text = "#usda 1.0\ndef \"A\" { def Mesh \"B\" { }\n over \"C\" {}\n over \"B\" {} }\nclass \"A\" {}\ndef \"B\" {}\n";
+        assert_eq!(twice(text), ["/A/B", "/A"]);
+        let variants = "#usda 1.0\ndef \"A\" { variantSet \"v\" = { \"x\" { def \"B\" {} } \"y\" { def \"B\" {} } } def \"B\" {} }\n";
+        assert_eq!(twice(variants), [""; 0]);
+        assert_eq!(twice("#usda 1.0\n} } def \"A\" {}\n"), [""; 0]);
     }
 
     /// Whatever is cut off where, nothing is lost and nothing breaks.
