@@ -5,6 +5,7 @@
 //! and [`Film::develop`] turns them into a [`Picture`] at any moment.
 
 mod aov;
+mod chosen;
 pub mod cryptomatte;
 mod filter;
 mod pass;
@@ -16,9 +17,10 @@ mod store;
 mod tile;
 
 pub use aov::{Aov, AovKind};
+pub use chosen::Chosen;
 pub use filter::{FILTERS, Filter, FilterRow};
 pub use pass::{PASSES, Pass, Storage};
-pub use pass_set::{Chosen, PassSet};
+pub use pass_set::PassSet;
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};
 pub use sample::{CryptoSample, FirstHit, GroupSample, PixelSample, Split};

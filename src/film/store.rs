@@ -6,8 +6,9 @@
 
 use std::sync::Arc;
 
+use super::chosen::Chosen;
 use super::pass::Develop;
-use super::pass_set::{Chosen, PassSet};
+use super::pass_set::PassSet;
 use super::picture::{Layer, Picture};
 use super::tile::{Layout, NonFinite, Tile};
 

@@ -4,9 +4,10 @@ use std::array;
 use std::sync::Arc;
 
 use super::aov::Aov;
+use super::chosen::Chosen;
 use super::cryptomatte::{CryptoKind, Matte};
 use super::pass::Means;
-use super::pass_set::{Chosen, PassSet};
+use super::pass_set::PassSet;
 use super::quantity::{Quantities, Quantity};
 use super::sample::{FirstHit, PixelSample};
 use crate::math::Rgb;
