@@ -95,6 +95,14 @@ pub enum LightKind {
         /// Full angle of the disk, radians; 0 for one direction.
         angle: f64,
     },
+    /// An opening in the local xy plane through which the light of domes comes, towards local −z: it emits
+    /// nothing and changes nothing but where domes are sampled.
+    Portal {
+        /// Along local x, metres.
+        width: f64,
+        /// Along local y, metres.
+        height: f64,
+    },
     /// What surrounds everything: constant, or a lat-long image. The image's centre is the light's
     /// local +x, its top row is +y; u grows clockwise seen from above, as in Cycles' equirectangular
     /// mapping.
@@ -335,7 +343,13 @@ impl LightKind {
         }
     }
 
-    /// Radiance, intensity or irradiance, whichever it is given in; white where a graph says it.
+    /// True for what emits nothing and tells where light comes from.
+    pub fn is_portal(&self) -> bool {
+        matches!(self, Self::Portal { .. })
+    }
+
+    /// Radiance, intensity or irradiance, whichever it is given in; white where a graph says it, black for a
+    /// portal.
     pub fn color(&self) -> [f64; 3] {
         match *self {
             Self::Point { intensity } => intensity,
@@ -346,6 +360,7 @@ impl LightKind {
             | Self::Cylinder { radiance, .. }
             | Self::Dome { radiance, .. } => radiance,
             Self::ShadedDome { .. } => [1.0; 3],
+            Self::Portal { .. } => [0.0; 3],
         }
     }
 }

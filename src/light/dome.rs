@@ -11,14 +11,17 @@
 
 mod image;
 mod irradiance;
+mod portal;
 
 pub use image::DomeImage;
+pub use portal::{Portal, Portals};
 
 use std::f32::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
 use self::irradiance::IrradianceMap;
+use self::portal::Openings;
 use super::{Emitter, EmitterHit, LightBounds, LightSample, Receiver};
 use crate::math::{Bounds, Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 use crate::sampling::warp;
@@ -27,6 +30,9 @@ use crate::sampling::warp;
 /// divide runs of 8 samples of a pattern exactly, and are rounded towards the bright part, whose shadows
 /// have the sharper edges.
 const FEWEST_EIGHTHS: f32 = 1.0;
+
+/// Share of the samples that go through portals where light can come through any, and there is another strategy.
+const GUIDED: f64 = 0.5;
 
 /// One step of a random number of 24 bits.
 const STEP: f64 = 1.0 / 16_777_216.0;
@@ -46,6 +52,8 @@ pub struct Dome {
     irradiance: Option<Arc<[IrradianceMap; 2]>>,
     /// Mean radiance over the sphere, luminance.
     mean: f32,
+    /// Where its light comes into rooms.
+    portals: Option<Arc<Portals>>,
 }
 
 impl Dome {
@@ -56,12 +64,25 @@ impl Dome {
             Some(maps) => maps[0].at(None) / (4.0 * PI),
             None => radiance.luminance(),
         };
-        Self { radiance, image, exact: None, irradiance, mean }
+        Self { radiance, image, exact: None, irradiance, mean, portals: None }
     }
 
     /// A dome of any radiance, sampled by `map` of it.
     pub fn shaded(map: DomeImage, radiance: DomeRadiance) -> Self {
         Self { exact: Some(radiance), ..Self::new(Rgb::WHITE, Some(map)) }
+    }
+
+    /// Samples it through `portals` as well, from where they are seen.
+    pub fn guide(&mut self, portals: Arc<Portals>) {
+        self.portals = Some(portals);
+    }
+
+    /// The portals through which it shines on `at`, and the share of the samples that goes through them; `None`
+    /// where there are none.
+    fn openings(&self, at: &Receiver) -> Option<(Openings<'_>, f64)> {
+        let openings = self.portals.as_ref()?.from(at);
+        let alone = !at.alone && self.bright().is_none();
+        (!openings.are_none()).then_some((openings, if alone { 1.0 } else { GUIDED }))
     }
 
     /// The image, where light sampling follows one that is brighter in places.
@@ -80,6 +101,16 @@ impl Dome {
         }
     }
 
+    /// Density of `wi` beside the portals.
+    fn pdf_unguided(&self, at: &Receiver, wi: Vec3) -> f32 {
+        let share = self.plain_share(at);
+        let plain = if share > 0.0 { share * pdf_plain(at, wi) } else { 0.0 };
+        match self.bright() {
+            Some(image) => plain + (1.0 - share) * image.pdf(wi),
+            None => plain,
+        }
+    }
+
     /// Share of the samples at `at` that go to all directions alike.
     fn plain_share(&self, at: &Receiver) -> f32 {
         match (at.alone, self.bright()) {
@@ -92,6 +123,13 @@ impl Dome {
             }
         }
     }
+}
+
+/// `unguided`, the density of `wi` beside the portals, with that of the portals.
+fn with_openings((openings, guided): &(Openings<'_>, f64), wi: Vec3, unguided: f32) -> f32 {
+    let guided = *guided as f32;
+    let beside = if guided < 1.0 { (1.0 - guided) * unguided } else { 0.0 };
+    guided * openings.pdf(wi) + beside
 }
 
 /// A direction of those alike: by the cosine where there is a normal.
@@ -116,28 +154,34 @@ impl fmt::Debug for Dome {
 
 impl Emitter for Dome {
     fn sample_li(&self, at: &Receiver, uc: f32, u: [f32; 2]) -> Option<LightSample> {
+        // Random numbers have 24 bits, of which choices would take some: `uc` adds more below them.
+        let mut u0 = f64::from(u[0]) + f64::from(uc) * STEP;
+        let openings = self.openings(at);
+        if let Some((openings, guided)) = &openings {
+            if u0 < *guided {
+                let wi = openings.sample(uc, [((u0 / guided) as f32).min(ONE_MINUS_EPSILON), u[1]])?;
+                let (li, pdf) = (self.le(wi, None), self.pdf_li(at, wi, None));
+                return (pdf > 0.0 && !li.is_black()).then_some(LightSample { li, wi, end: None, pdf, delta: false });
+            }
+            u0 = (u0 - guided) / (1.0 - guided);
+        }
         let share = self.plain_share(at);
-        // Random numbers have 24 bits, of which the choice would take some: `uc` adds more below them.
-        let u0 = f64::from(u[0]) + f64::from(uc) * STEP;
         let share64 = f64::from(share);
         let (wi, li, pdf) = if u0 < share64 {
             let wi = sample_plain(at, [((u0 / share64) as f32).min(ONE_MINUS_EPSILON), u[1]]);
-            (wi, self.le(wi, None), self.pdf_li(at, wi, None))
+            (wi, self.le(wi, None), self.pdf_unguided(at, wi))
         } else {
             let s = self.bright()?.sample([(u0 - share64) / (1.0 - share64), f64::from(u[1]) + 0.5 * STEP])?;
             let li = self.exact.as_ref().map_or_else(|| s.radiance * self.radiance, |exact| exact(s.wi));
             (s.wi, li, (1.0 - share) * s.pdf + share * pdf_plain(at, s.wi))
         };
+        let pdf = openings.map_or(pdf, |openings| with_openings(&openings, wi, pdf));
         (pdf > 0.0 && !li.is_black()).then_some(LightSample { li, wi, end: None, pdf, delta: false })
     }
 
     fn pdf_li(&self, at: &Receiver, wi: Vec3, _hit: Option<&EmitterHit>) -> f32 {
-        let share = self.plain_share(at);
-        let plain = if share > 0.0 { share * pdf_plain(at, wi) } else { 0.0 };
-        match self.bright() {
-            Some(image) => plain + (1.0 - share) * image.pdf(wi),
-            None => plain,
-        }
+        let pdf = self.pdf_unguided(at, wi);
+        self.openings(at).map_or(pdf, |openings| with_openings(&openings, wi, pdf))
     }
 
     fn le(&self, wi: Vec3, _hit: Option<&EmitterHit>) -> Rgb {
@@ -158,7 +202,11 @@ impl Emitter for Dome {
 
     fn importance(&self, at: &Receiver) -> f32 {
         let [all, bright] = self.irradiances(at);
-        if at.alone { all } else { bright }
+        if at.alone {
+            return all;
+        }
+        let through = self.portals.as_ref().map_or(0.0, |portals| self.mean * portals.from(at).solid_angle as f32);
+        bright.max(through)
     }
 
     fn power(&self, scene: Bounds) -> f32 {

@@ -30,7 +30,7 @@ pub use choice::{Choice, Strategy};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use distant::Distant;
-pub use dome::{Dome, DomeImage, DomeRadiance};
+pub use dome::{Dome, DomeImage, DomeRadiance, Portal, Portals};
 pub use emission::Emission;
 pub use flat::Flat;
 pub use mesh::{MeshEmitters, MeshLight};

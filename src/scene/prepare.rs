@@ -13,6 +13,7 @@ mod lights;
 mod links;
 mod materials;
 mod mend;
+mod portals;
 mod shadow_look;
 mod shaping;
 mod suns;
@@ -228,7 +229,9 @@ fn tell_of_darkness(desc: &SceneDesc, lights: &[Light], materials: &[super::Mate
 
 /// The dome of a scene that was given no light at all.
 fn default_dome(desc: &SceneDesc, materials: &[super::Material], warnings: &mut Warnings) -> Option<LightDesc> {
-    let lit = !desc.lights.is_empty() || materials.iter().any(super::Material::emits) || lost_light(desc);
+    let lit = desc.lights.iter().any(|light| !light.kind.is_portal())
+        || materials.iter().any(super::Material::emits)
+        || lost_light(desc);
     if lit {
         return None;
     }

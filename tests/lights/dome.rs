@@ -2,11 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use penumbra::light::{Dome, DomeImage, Emitter, Receiver};
+use std::sync::Arc;
+
+use penumbra::light::{Dome, DomeImage, Emitter, Portal, Portals, Receiver};
 use penumbra::math::{Bounds, DVec3, Mat3, Rgb, Vec3};
-use penumbra::sampling::{Dimension, Pattern, Sampler};
+use penumbra::sampling::{Decision, Dimension, Pattern, Sampler};
 
 use crate::laws::{Case, hold, irradiance_holds};
+use crate::plane::{self, Pose};
 
 /// An image given by a function of column and row.
 struct Image {
@@ -114,6 +117,74 @@ fn images_hold_the_laws() {
         cases.push(case(name, image, turned(), n));
     }
     hold(&cases);
+}
+
+/// `dome`, guided by openings with these half sizes.
+fn guided(mut dome: Dome, openings: &[(&Pose, [f64; 2])]) -> Dome {
+    let portal = |&(pose, half): &(&Pose, [f64; 2])| Portal { center: pose.center, axes: pose.axes, half };
+    dome.guide(Arc::new(Portals::new(openings.iter().map(portal).collect())));
+    dome
+}
+
+/// Portals change where a dome is sampled, and nothing of what it gives: one and two, near, far, overlapping, below
+/// the horizon, and those that are seen from behind.
+#[test]
+fn guided_domes_hold_the_laws() {
+    let n = Vec3::new(0.48, 0.6, -0.64);
+    let above = Pose::down(DVec3::new(0.3, 1.0, -0.5));
+    let far = Pose::down(DVec3::new(-20.0, 90.0, 10.0));
+    let below = Pose::down(DVec3::new(-1.0, 0.5, 3.0));
+    let behind = Pose::down(DVec3::new(0.0, -1.0, 0.0));
+    let mut cases = Vec::new();
+    for (name, openings) in [
+        ("near", vec![(&above, [0.5, 0.8])]),
+        ("far", vec![(&far, [0.5, 0.25])]),
+        ("overlapping", vec![(&above, [0.5, 0.8]), (&far, [20.0, 9.0])]),
+        ("half below", vec![(&below, [4.0, 3.0]), (&above, [0.1, 0.1])]),
+        ("behind", vec![(&behind, [1.0, 1.0])]),
+    ] {
+        let constant = guided(Dome::new(Rgb::splat(0.5), None), &openings);
+        cases.push(Case::new(format!("constant, {name}"), constant, Vec3::ZERO, n, 0.5 * PI));
+        let image = Image::new([16, 8], noise);
+        let noisy = guided(image.dome(Rgb::WHITE, turned()), &openings);
+        cases.push(Case::new(format!("noise, {name}"), noisy, Vec3::ZERO, n, image.irradiance(turned(), n)));
+    }
+    hold(&cases);
+}
+
+/// A room with one window: what comes through is known in closed form, and found with less noise.
+#[test]
+fn portals_find_the_light_of_a_room() {
+    let window = Pose::down(DVec3::new(0.4, 2.0, 0.3));
+    let half = [0.2, 0.15];
+    let closed = plane::irradiance(&window.corners(half), Vec3::ZERO, Vec3::Y);
+    let image = Image::new([64, 32], |_, _| 1.0);
+    for (name, dome) in [("constant", Dome::new(Rgb::WHITE, None)), ("image", image.dome(Rgb::WHITE, turned()))] {
+        let at = Receiver { n: Some(Vec3::Y), alone: true, ..Receiver::everywhere(Vec3::ZERO) };
+        let estimate = |dome: &Dome| {
+            let (mut sum, mut squares) = (0.0, 0.0);
+            let n = 1 << 14;
+            for i in 0..n {
+                let sampler = Sampler::new(Pattern::Independent, 1).for_sample(0, 0, i);
+                let uc = sampler.get_1d(Dimension::at_bounce(0, Decision::LightChoice));
+                let sample = dome.sample_li(&at, uc, sampler.get_2d(Dimension::at_bounce(0, Decision::LightPoint)));
+                let through = sample.filter(|s| {
+                    let q = s.wi * (2.0 / s.wi.y);
+                    s.wi.y > 0.0 && (q.x - 0.4).abs() < 0.2 && (q.z - 0.3).abs() < 0.15
+                });
+                let value = through.map_or(0.0, |s| f64::from(s.li.luminance() * s.wi.y / s.pdf));
+                (sum, squares) = (sum + value, squares + value * value);
+            }
+            let mean = sum / n as f64;
+            (mean, squares / n as f64 - mean * mean)
+        };
+        let (plain_mean, plain) = estimate(&dome);
+        let (mean, variance) = estimate(&guided(dome, &[(&window, half)]));
+        println!("{name}: {closed} in closed form, {plain_mean} and {mean}; variance {plain} and {variance}");
+        let off = |mean: f64, variance: f64| (mean - closed).abs() / (variance / f64::from(1 << 14)).sqrt();
+        assert!(off(plain_mean, plain) < 4.0 && off(mean, variance) < 4.0, "{name}: {plain_mean} {mean} {closed}");
+        assert!(variance < 0.05 * plain, "{name}: {variance} {plain}");
+    }
 }
 
 /// One texel of 1e2 to 1e8 above 1e-3 all around, `E = Σ L ½ (sin² θ₁ − sin² θ₀) Δφ` facing up.

@@ -22,6 +22,7 @@ pub fn describe(light: &LightDesc, scene: &SceneDesc) -> Value {
         LightKind::Disk { .. } => ("disk", "W/(m2 sr)"),
         LightKind::Cylinder { .. } => ("cylinder", "W/(m2 sr)"),
         LightKind::Dome { .. } | LightKind::ShadedDome { .. } => ("dome", "W/(m2 sr)"),
+        LightKind::Portal { .. } => ("portal", "W/(m2 sr)"),
     };
     let mut value = json!({ "name": &*light.name, "kind": kind, "value": light.kind.color(), "unit": unit });
     let Some(fields) = value.as_object_mut() else { return value };
@@ -44,6 +45,9 @@ fn shape(kind: LightKind, fields: &mut Map<String, Value>) {
             if facing {
                 set("facing", json!(true));
             }
+        }
+        LightKind::Portal { width, height } => {
+            set("size_m", json!([width, height]));
         }
         LightKind::Rect { width, height, spread, two_sided, .. }
         | LightKind::Disk { width, height, spread, two_sided, .. } => {

@@ -203,6 +203,7 @@ fn kind(kind: LightKind, scene: &SceneDesc) -> Value {
         LightKind::Dome { radiance, image: texture } => {
             json!({ "kind": "dome", "radiance": radiance, "image": image(texture) })
         }
+        LightKind::Portal { width, height } => json!({ "kind": "portal", "width": width, "height": height }),
         LightKind::ShadedDome { shader } => json!({ "kind": "shaded dome", "shader": shader }),
     }
 }

@@ -29,11 +29,8 @@ impl Default for LampShader {
     }
 }
 
-/// The light of a lamp; `None` for one that can't emit: a portal, or an area without size.
+/// The light of a lamp; `None` for one that can't emit: an area without size.
 pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mut Warnings) -> Option<LightDesc> {
-    if data.is_portal {
-        return None;
-    }
     let place = place.at(&data.name);
     let scale = data.energy * data.exposure.exp2();
     let power: [f64; 3] = std::array::from_fn(|i| scale * data.color[i] * data.temperature_color[i] * shader.factor[i]);
@@ -60,7 +57,7 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
             return None;
         }
     };
-    if matches!(kind, LightKind::Rect { .. } | LightKind::Disk { .. }) {
+    if matches!(kind, LightKind::Rect { .. } | LightKind::Disk { .. } | LightKind::Portal { .. }) {
         // The sizes are those in the world; of the scale only a mirror is left, which turns the side
         // that emits.
         let flip = if transform.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -93,6 +90,10 @@ fn area(data: &LightData, times: &dyn Fn(f64) -> [f64; 3], scale: [f64; 2]) -> O
     let area = width * height * if round { 0.25 * PI } else { 1.0 };
     if !(area > 0.0 && area.is_finite()) {
         return None;
+    }
+    if data.is_portal {
+        // Of a round one the box around it: it need but hold the opening.
+        return Some(LightKind::Portal { width, height });
     }
     let radiance = times(if data.normalize { 1.0 / (PI * area) } else { 1.0 / PI });
     let spread = data.spread.clamp(0.0, PI);
@@ -170,7 +171,8 @@ mod tests {
         assert_eq!(light.transform.matrix3.z_axis, DVec3::NEG_Z);
         let none = LightData { size: 0.0, ..area };
         assert!(light_of(&none).is_none());
-        assert!(light_of(&LightData { is_portal: true, ..LightData::default() }).is_none());
+        let portal = LightData { is_portal: true, size: 2.0, ..none };
+        assert_eq!(lamp(portal).kind, LightKind::Portal { width: 2.0, height: 2.0 });
     }
 
     fn light_of(data: &LightData) -> Option<LightDesc> {

@@ -275,10 +275,6 @@ impl BlenderScene {
         warnings: &mut Warnings,
     ) {
         let document = &self.document;
-        if document.lights.iter().any(|light| light.is_portal) {
-            warnings
-                .push(&desc.place, "portals guide nothing here: the picture is the same without them, only its noise");
-        }
         for data in &document.lights {
             let shader = match &data.nodes {
                 Some(tree) => nodes::lamp(tree, images, desc.place.at(&data.name), warnings),

@@ -43,7 +43,7 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
             let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
             dome::prepare(desc, color, image, orientation, mended)?.into()
         }
-        LightKind::ShadedDome { .. } => return None,
+        LightKind::ShadedDome { .. } | LightKind::Portal { .. } => return None,
         LightKind::Rect { .. } | LightKind::Disk { .. } => {
             let flat = Flat { profile, ..Flat::new(light.transform.translation - origin, axes, color) };
             flat::prepare(desc, light, flat, mended)?

@@ -7,10 +7,10 @@ use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
 use super::links::Links;
 use super::mend::Mended;
-use super::{dome, lamp, shadow_look, shaping, suns};
+use super::{dome, lamp, portals, shadow_look, shaping, suns};
 use crate::desc::{LightDesc, LightKind, LightLinks, SceneDesc, Visibility};
 use crate::error::Warnings;
-use crate::light::{Light, Rules, Seen, ShadowLook};
+use crate::light::{AnyEmitter, Light, Rules, Seen, ShadowLook};
 
 /// Factors of a light's light; what is no factor counts as 0.
 fn response(factors: [f64; 2]) -> Option<[f32; 2]> {
@@ -43,12 +43,16 @@ pub fn prepare(
         receivers: links.receivers(of),
         response: response(of.response),
     };
+    let portals = portals::prepare(desc, shared.origin, warnings);
     let mut lights = Vec::new();
-    for light in desc.lights.iter().chain(extra) {
-        let emitter = match light.kind {
+    for light in desc.lights.iter().chain(extra).filter(|light| !light.kind.is_portal()) {
+        let mut emitter = match light.kind {
             LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared, cache).map(Into::into),
             _ => lamp::prepare(desc, light, shared.origin, warnings),
         };
+        if let (Some(AnyEmitter::Dome(dome)), Some(portals)) = (&mut emitter, &portals) {
+            dome.guide(portals.clone());
+        }
         let mut mended = Mended::default();
         let look = shadow_look::prepare(&light.links, &mut mended);
         if light.motion.iter().any(|moved| moved.value != light.transform) {

@@ -11,9 +11,6 @@ use crate::math::{DAffine3, DMat3, DVec3};
 pub(super) fn read(light: &Light<'_>, images: &mut Images) -> (LightKind, DAffine3) {
     let values = &light.values;
     let radiance = color::emission(values);
-    if !values.targets("portals").is_empty() {
-        values.warn("portals only guide the sampling of a dome: they are not used");
-    }
     let file = values.asset("inputs:texture:file");
     let image = file.and_then(|file| images.load(values.reading, &light.path, &file, ColorSpace::Srgb));
     let image = image.map(|image| lat_long(light, image, images));

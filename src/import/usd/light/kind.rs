@@ -18,6 +18,7 @@ pub(super) fn read(light: &Light<'_>, images: &mut Images) -> Option<LightKind> 
         "RectLight" => Some(rect(light, emission, images)),
         "CylinderLight" => Some(cylinder(light, emission)),
         "DistantLight" => Some(distant(light, emission)),
+        "PortalLight" => Some(portal(light)),
         kind => {
             light.values.warn(format!("{kind} is no light that is known: it is left out"));
             None
@@ -37,6 +38,7 @@ pub(super) fn scaled(mut kind: LightKind, factor: f64) -> LightKind {
         | LightKind::Dome { radiance: color, .. } => *color = times(*color, factor),
         // USD makes none.
         LightKind::ShadedDome { .. } => {}
+        LightKind::Portal { .. } => {}
     }
     kind
 }
@@ -89,6 +91,12 @@ impl Light<'_> {
         // Without area it emits nothing, which is told of where the scene is prepared.
         if self.normalized() && area > 0.0 { self.unit() * self.unit() / area } else { 1.0 }
     }
+}
+
+/// The rectangle of a portal; one unit in older files, whose schema has no sizes.
+fn portal(light: &Light<'_>) -> LightKind {
+    let [x, y, _] = light.scale();
+    LightKind::Portal { width: light.size("inputs:width", 1.0) * x, height: light.size("inputs:height", 1.0) * y }
 }
 
 fn sphere(light: &Light<'_>, emission: [f64; 3]) -> LightKind {
@@ -316,7 +324,7 @@ mod tests {
             }
             def CylinderLight "Line" { bool treatAsLine = 1 }
             def PluginLight "Plug" {}
-            def PortalLight "Door" {}
+            def PortalLight "Door" { float inputs:width = 3 }
             def RectLight "Odd" (prepend apiSchemas = ["ShadowAPI"]) {
                 bool inputs:shadow:enable = 0
                 rel light:filters = </Line>
@@ -329,14 +337,14 @@ mod tests {
         assert!(!egg.visibility.diffuse && egg.visibility.glossy);
         assert_eq!(egg.links.response, [0.0, 0.5]);
         assert!(stage.light("/Line").is_some());
-        assert_eq!((stage.light("/Plug"), stage.light("/Door")), (None, None));
+        assert_eq!(stage.light("/Plug"), None);
+        assert_eq!(stage.light("/Door").unwrap().kind, LightKind::Portal { width: 3.0, height: 1.0 });
         assert!(!stage.light("/Odd").unwrap().links.cast_shadow);
         let said = stage.said();
         for what in [
             "/Egg: its scale makes an ellipsoid",
             "/Line: treatAsLine",
             "/Plug: lights that need a plugin",
-            "/Door: portals",
             "/Odd: light filters",
             "/Odd: inputs:intensity is connected",
         ] {

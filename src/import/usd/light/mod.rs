@@ -85,10 +85,6 @@ fn still(reading: &Reading<'_>, placed: &Placed, images: &mut Images, profiles: 
     }
     let (kind, transform) = match &*placed.kind {
         "DomeLight" | "DomeLight_1" => dome::read(&light, images),
-        "PortalLight" => {
-            light.values.warn("portals only guide the sampling of a dome: it is not used");
-            return None;
-        }
         // Its target shines: `geometry_light`.
         "GeometryLight" => return None,
         "PluginLight" => {
