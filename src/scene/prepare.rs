@@ -6,6 +6,7 @@ mod camera;
 mod dome;
 mod emissive;
 mod flat;
+mod flattened;
 mod geometry;
 mod graphs;
 mod lamp;
@@ -75,6 +76,7 @@ pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prep
 pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache: &mut Cache) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
+    flattened::prepare(&mut desc, &mut warnings);
     let (camera_desc, whole) = camera::choose(&desc, view, &mut warnings)?;
     let size = cropped(&desc, whole)?;
     let origin = render_space_origin(&desc, camera_desc.transform.translation);

@@ -18,7 +18,7 @@ fn what_is_broken_is_told_and_the_rest_is_shown() {
         "bad.usda, /World/NoPrim: the referenced layer",
         "bad.usda, /World/Cycle/Inner: is composed of itself",
         "bad.usda, /World/FromTheFuture: type 'Mesh_9' is of no schema that is known here",
-        "bad.usda, /World/Nan: its transform is singular or not finite; it is left out",
+        "bad.usda, /World/Nan: its transform is not finite, or beyond 1e30; it is left out",
         "centimetres.usda: metersPerUnit is 0.01, that of the stage 1;",
         "centimetres.usda: upAxis is Z, that of the stage Y;",
         "bad.usda, /World/Sound: purpose 'ornament' is not known; taken for default",

@@ -79,8 +79,8 @@ pub(super) fn place(
     for (number, found) in found.iter().enumerate() {
         let Some(dressed) = shapes.by_look.get(&found.key()) else { continue };
         let Some(Some(shape)) = refs.get(dressed.shape) else { continue };
-        if !usable(&found.pose.world) {
-            reading.warn(&found.path, "its transform is singular or not finite; it is left out");
+        if !in_range(&found.pose.world) {
+            reading.warn(&found.path, "its transform is not finite, or beyond 1e30; it is left out");
             continue;
         }
         let own = found.look.shape.as_ref().and_then(|shape| shape.light.as_ref());
@@ -186,10 +186,7 @@ impl Names {
     }
 }
 
-/// True where `world` is finite, also in single precision, and has an inverse.
-fn usable(world: &DAffine3) -> bool {
-    let m = world.matrix3;
-    let size = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    let in_range = world.to_cols_array().iter().all(|v| v.abs() < 1e30);
-    in_range && size > 1e-60 && m.determinant().abs() > 1e-12 * size
+/// What leaves it has no room in single precision.
+fn in_range(world: &DAffine3) -> bool {
+    world.to_cols_array().iter().all(|v| v.abs() < 1e30)
 }

@@ -35,6 +35,9 @@ pub(super) struct Kind {
     pub xformable: bool,
 }
 
+/// Types of OpenUSD that there is no schema of here.
+const NOT_RENDERED: [&str; 4] = ["Volume", "OpenVDBAsset", "Field3DAsset", "GenerativeProcedural"];
+
 /// The types met so far.
 #[derive(Default)]
 pub(super) struct Kinds(HashMap<Token, Kind>);
@@ -56,7 +59,10 @@ impl Kinds {
         let (imageable, xformable) = (is("Imageable"), is("Xformable"));
         let mut kind = Kind { type_name: token.clone(), name: name.as_str().into(), role, imageable, xformable };
         if schema.is_none() && role == Role::Leaf {
-            let what = format!("type '{token}' is of no schema that is known here; the prim itself shows nothing");
+            let what = match NOT_RENDERED.contains(&token.as_str()) {
+                true => format!("prims of type '{token}' are not rendered"),
+                false => format!("type '{token}' is of no schema that is known here; the prim itself shows nothing"),
+            };
             reading.warn(prim.path(), what);
             kind.role = Role::Group;
         }

@@ -10,7 +10,9 @@ use crate::desc::{ConeDesc, LightKind, ShapingDesc};
 pub(super) fn read(light: &Light<'_>, kind: &LightKind, profiles: &mut Profiles) -> (ShapingDesc, f64) {
     let values = &light.values;
     if matches!(kind, LightKind::Distant { .. } | LightKind::Dome { .. }) {
-        if values.has_api("ShapingAPI") {
+        // Some write it to every light, with a cone that takes nothing away.
+        let shapes = cone(values, false).is_some() || values.number("inputs:shaping:focus").unwrap_or(0.0) > 0.0;
+        if values.has_api("ShapingAPI") && (shapes || values.asset("inputs:shaping:ies:file").is_some()) {
             values.warn("ShapingAPI on a light that is infinitely far away is not rendered");
         }
         return (ShapingDesc::default(), 1.0);

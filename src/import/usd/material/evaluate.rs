@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::expr::{Exprs, Id, Op};
 use super::network::{Network, Node, Source, Value};
 use super::surface::Surface;
-use super::{Materials, color, pattern, texture};
+use super::{Materials, color, gltf, pattern, texture};
 use crate::desc::graph::{Function, Value as V};
 
 /// The longest chain of nodes that is followed.
@@ -127,6 +127,9 @@ impl<'m, 'a> Evaluator<'m, 'a> {
         let category = self.node(node).category.as_str();
         match category {
             "image" | "tiledimage" => texture::image(self, node, category == "tiledimage"),
+            "gltf_image" => gltf::image(self, node),
+            "gltf_colorimage" => gltf::color_image(self, node, output),
+            "gltf_normalmap" => gltf::normal_map(self, node),
             "UsdUVTexture" => {
                 let id = texture::usd(self, node)?;
                 Some(place(output).map_or(id, |place| self.exprs.extract(id, place)))

@@ -11,6 +11,7 @@ mod color;
 mod evaluate;
 mod expr;
 mod geometry;
+mod gltf;
 mod lower;
 mod models;
 mod mtlx;

@@ -70,6 +70,32 @@ const WITH_UNDERSCORE: &[&str] = &[
     "gltf_pbr",
 ];
 
+/// What types of MaterialX begin with; identifiers end with those of a node's output and, at times, inputs.
+const TYPES: &[&str] = &[
+    "float",
+    "integer",
+    "boolean",
+    "color3",
+    "color4",
+    "vector2",
+    "vector3",
+    "vector4",
+    "matrix33",
+    "matrix44",
+    "string",
+    "filename",
+    "surfaceshader",
+    "displacementshader",
+    "volumeshader",
+    "lightshader",
+    "bsdf",
+    "edf",
+    "vdf",
+];
+
+/// Types of USD's own readers of primvars that are not among them.
+const TYPES_OF_READERS: &[&str] = &["int", "point", "normal", "vector", "matrix"];
+
 /// Category and type of a node's identifier: `ND_mix_color3` is "mix" and "color3",
 /// `UsdPrimvarReader_float2` "UsdPrimvarReader" and "float2".
 pub(super) fn category(id: &str) -> (&str, &str) {
@@ -81,7 +107,9 @@ pub(super) fn category(id: &str) -> (&str, &str) {
             return (known, rest.trim_start_matches('_'));
         }
     }
-    name.split_once('_').unwrap_or((name, ""))
+    let is_type = |rest: &str| TYPES.iter().any(|kind| rest.starts_with(kind)) || TYPES_OF_READERS.contains(&rest);
+    let splits = name.match_indices('_').map(|(at, _)| (&name[..at], &name[at + 1..]));
+    splits.into_iter().find(|(_, rest)| is_type(rest)).unwrap_or((name, ""))
 }
 
 impl Node {
@@ -115,6 +143,11 @@ mod tests {
             ("ND_surface", ("surface", "")),
             ("ND_oren_nayar_diffuse_bsdf", ("oren_nayar_diffuse_bsdf", "")),
             ("ND_mix_bsdf", ("mix", "bsdf")),
+            ("ND_logical_and", ("logical_and", "")),
+            ("arnold:standard_surface", ("arnold:standard_surface", "")),
+            ("ND_gltf_image_color3_color3_1_0", ("gltf_image", "color3_color3_1_0")),
+            ("ND_combine2_color4CF", ("combine2", "color4CF")),
+            ("UsdPrimvarReader_normal", ("UsdPrimvarReader", "normal")),
         ] {
             assert_eq!(category(id), expected, "{id}");
         }

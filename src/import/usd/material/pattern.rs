@@ -98,6 +98,7 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
             let color = e.exprs.add(color, added);
             e.exprs.apply(F::HsvToRgb, &[color])
         }
+        "colorcorrect" => color_correct(e, node),
         "plus" | "minus" | "difference" | "screen" | "burn" | "dodge" | "overlay" => blend(e, node, category)?,
         "convert" => convert(e, node),
         "extract" => {
@@ -190,6 +191,43 @@ fn range(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
     } else {
         e.exprs.apply(F::Math(Math::Clamp), &[value, out_low, out_high])
     }
+}
+
+/// Hue, saturation, gamma, lift, gain, contrast and exposure, in this order, by MaterialX's own graph.
+fn color_correct(e: &mut Evaluator<'_, '_>, node: usize) -> Id {
+    let color = e.input(node, "in", [1.0; 4]);
+    let [hue, lift, exposure] = ["hue", "lift", "exposure"].map(|name| e.scalar(node, name, 0.0));
+    let [amount, gamma, gain, contrast] =
+        ["saturation", "gamma", "gain", "contrast"].map(|name| e.scalar(node, name, 1.0));
+    let pivot = e.scalar(node, "contrastpivot", 0.5);
+    let hsv = e.exprs.apply(F::RgbToHsv, &[color]);
+    let first = e.exprs.constant([1.0, 0.0, 0.0, 0.0]);
+    let turn = e.exprs.multiply(hue, first);
+    let turned = e.exprs.add(hsv, turn);
+    let rgb = e.exprs.apply(F::HsvToRgb, &[turned]);
+    let grey = luminance(e, node, rgb);
+    let x = &mut e.exprs;
+    let one = x.number(1.0);
+    let saturated = x.mix(grey, rgb, amount);
+    let power = x.math(Math::Divide, &[one, gamma]);
+    let curved = if x.is(power, 1.0) { saturated } else { x.math(Math::SignedPower, &[saturated, power]) };
+    let rest = x.subtract(one, lift);
+    let scaled = x.multiply(curved, rest);
+    let lifted = x.add(scaled, lift);
+    let gained = x.multiply(lifted, gain);
+    let above = x.subtract(gained, pivot);
+    let above = x.multiply(above, contrast);
+    let contrasted = x.add(above, pivot);
+    let two = x.number(2.0);
+    let stops = x.math(Math::Power, &[two, exposure]);
+    let exposed = x.multiply(contrasted, stops);
+    if count(&e.node(node).kind) < 4 {
+        return exposed;
+    }
+    // Opacity stays as it is.
+    let mut parts = [0, 1, 2].map(|place| e.exprs.extract(exposed, place)).to_vec();
+    parts.push(e.exprs.extract(color, 3));
+    e.exprs.apply(F::Combine, &parts)
 }
 
 /// The blend nodes: a function of foreground and background, mixed over the background.

@@ -53,7 +53,12 @@ impl Builder<'_, '_> {
     /// Tells of a connection to what is not there.
     fn tell_of_lost(&self, attribute: &Attribute) {
         let to = attribute.connections().unwrap_or_default();
-        if let Some(to) = to.first() {
+        // An input of the material that has no value asks for the default.
+        let is_unset = |to: &sdf::Path| {
+            to.name().is_some_and(|name| name.starts_with("inputs:"))
+                && self.reading.stage.attribute(to).is_ok_and(|to| to.is_defined().unwrap_or(false))
+        };
+        if let Some(to) = to.first().filter(|to| !is_unset(to)) {
             self.reading.warn(attribute.path(), format!("it is connected to {to}, which gives nothing: left out"));
         }
     }

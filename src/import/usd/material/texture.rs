@@ -66,19 +66,6 @@ pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
 
 /// MaterialX's image and tiledimage.
 pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Option<Id> {
-    let data = e.node(node);
-    let default = e.input(node, "default", [0.0; 4]);
-    let named = data.inputs.get("file").and_then(|file| file.color_space.as_deref()).unwrap_or_default();
-    let is_color = data.kind.starts_with("color");
-    let (space, rest) = match color::decoding(named) {
-        Some(_) if !is_color => (Space::Raw, ""),
-        Some(_) if named.is_empty() => (Space::Auto, ""),
-        Some(known) => known,
-        None => {
-            e.warn(node, format!("color space \"{named}\" isn't known; taken by the kind of the file"));
-            (Space::Auto, "")
-        }
-    };
     let mut uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
     if tiled {
         let tiling = e.input(node, "uvtiling", [1.0; 4]);
@@ -90,6 +77,25 @@ pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Opti
         let sized = e.exprs.math(Math::Divide, &[moved, size]);
         uv = e.exprs.multiply(sized, tile);
     }
+    let kind = e.node(node).kind.as_str();
+    image_at(e, node, uv, kind)
+}
+
+/// The image of a node that has the inputs of `image`, at `uv`, as a value of the type `kind`.
+pub(super) fn image_at(e: &mut Evaluator<'_, '_>, node: usize, uv: Id, kind: &str) -> Option<Id> {
+    let data = e.node(node);
+    let default = e.input(node, "default", [0.0; 4]);
+    let named = data.inputs.get("file").and_then(|file| file.color_space.as_deref()).unwrap_or_default();
+    let is_color = kind.starts_with("color");
+    let (space, rest) = match color::decoding(named) {
+        Some(_) if !is_color => (Space::Raw, ""),
+        Some(_) if named.is_empty() => (Space::Auto, ""),
+        Some(known) => known,
+        None => {
+            e.warn(node, format!("color space \"{named}\" isn't known; taken by the kind of the file"));
+            (Space::Auto, "")
+        }
+    };
     let wrap = ["uaddressmode", "vaddressmode"].map(|name| match data.text(name) {
         Some("clamp") => Wrap::Clamp,
         Some("mirror") => Wrap::Mirror,
@@ -100,7 +106,7 @@ pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Opti
     let wish = Wish { file: file(e, node), space, uv, wrap, filter };
     match look_up(e, node, &wish) {
         // A number is the first channel.
-        Ok(texel) if data.kind == "float" => Some(e.exprs.extract(texel, 0)),
+        Ok(texel) if kind == "float" => Some(e.exprs.extract(texel, 0)),
         Ok(texel) => Some(color::convert(&mut e.exprs, texel, rest).unwrap_or(texel)),
         Err(what) => {
             e.warn(node, format!("{what}; the node's default is used"));
@@ -156,24 +162,45 @@ pub(super) fn transform(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     Some(e.exprs.add(turned, offset))
 }
 
-/// MaterialX's place2d: what it does to the image, hence the inverse to the coordinates.
+/// What is done to an image, hence the inverse to the coordinates.
+pub(super) struct Placement {
+    pub pivot: Id,
+    pub scale: Id,
+    /// Degrees, counter-clockwise.
+    pub angle: Id,
+    pub offset: Id,
+    /// True where the coordinates are moved before they are turned and scaled.
+    pub offset_first: bool,
+}
+
+impl Placement {
+    /// `uv` with the inverse done to it.
+    pub fn place(&self, e: &mut Evaluator<'_, '_>, uv: Id) -> Id {
+        let mut uv = e.exprs.subtract(uv, self.pivot);
+        if self.offset_first {
+            uv = e.exprs.subtract(uv, self.offset);
+            uv = rotate_by(e, uv, self.angle, -1.0);
+            uv = e.exprs.math(Math::Divide, &[uv, self.scale]);
+        } else {
+            uv = e.exprs.math(Math::Divide, &[uv, self.scale]);
+            uv = rotate_by(e, uv, self.angle, -1.0);
+            uv = e.exprs.subtract(uv, self.offset);
+        }
+        e.exprs.add(uv, self.pivot)
+    }
+}
+
+/// MaterialX's place2d.
 pub(super) fn place(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let uv = e.optional(node, "texcoord").unwrap_or_else(|| e.texcoord("st".into()));
-    let (pivot, offset) = (e.input(node, "pivot", [0.0; 4]), e.input(node, "offset", [0.0; 4]));
-    let scale = e.input(node, "scale", [1.0; 4]);
-    let angle = e.scalar(node, "rotate", 0.0);
-    let offset_first = e.uniform(node, "operationorder", 0.0) != 0.0;
-    let mut uv = e.exprs.subtract(uv, pivot);
-    if offset_first {
-        uv = e.exprs.subtract(uv, offset);
-        uv = rotate_by(e, uv, angle, -1.0);
-        uv = e.exprs.math(Math::Divide, &[uv, scale]);
-    } else {
-        uv = e.exprs.math(Math::Divide, &[uv, scale]);
-        uv = rotate_by(e, uv, angle, -1.0);
-        uv = e.exprs.subtract(uv, offset);
-    }
-    Some(e.exprs.add(uv, pivot))
+    let placement = Placement {
+        pivot: e.input(node, "pivot", [0.0; 4]),
+        scale: e.input(node, "scale", [1.0; 4]),
+        angle: e.scalar(node, "rotate", 0.0),
+        offset: e.input(node, "offset", [0.0; 4]),
+        offset_first: e.uniform(node, "operationorder", 0.0) != 0.0,
+    };
+    Some(placement.place(e, uv))
 }
 
 /// The first two numbers turned counter-clockwise, in radians.

@@ -294,6 +294,88 @@ fn a_document_is_read_through_its_reference() {
     assert!(gone.material.is_none() && gone.warnings.contains("no.mtlx"), "{}", gone.warnings);
 }
 
+/// gltf_pbr's image nodes by the graphs of its library: `u' = o + s c u + …` is KHR_texture_transform.
+#[test]
+fn images_of_gltf_pbr_are_placed_as_its_graphs_have_it() {
+    let folder = tempfile::tempdir().unwrap();
+    png(folder.path(), "a.png", 1, &[[255, 128, 0]]);
+    let placed = "asset inputs:file = @a.png@
+        float2 inputs:scale = (2, 3)
+        float inputs:rotate = 30
+        float2 inputs:offset = (0.25, 0.5)";
+    let nodes = format!(
+        "def Shader \"c\" {{ uniform token info:id = \"ND_gltf_colorimage\"
+            {placed}
+            color4f inputs:color = (0.5, 0.25, 1, 0.5)
+            color3f outputs:outcolor
+            float outputs:outa }}
+        def Shader \"r\" {{ uniform token info:id = \"ND_gltf_image_float_float_1_0\"
+            {placed}
+            float inputs:factor = 0.5
+            float outputs:out }}
+        def Shader \"n\" {{ uniform token info:id = \"ND_gltf_normalmap_vector3_1_0\"
+            {placed}
+            vector3f outputs:out }}"
+    );
+    let read = mtlx_in(
+        folder.path(),
+        "ND_gltf_pbr_surfaceshader",
+        "color3f inputs:base_color.connect = </m/c.outputs:outcolor>
+         float inputs:alpha.connect = </m/c.outputs:outa>
+         int inputs:alpha_mode = 2
+         float inputs:roughness.connect = </m/r.outputs:out>
+         vector3f inputs:normal.connect = </m/n.outputs:out>",
+        &nodes,
+    );
+    assert_eq!(read.warnings, "");
+    let m = read.material();
+    same(&m.base_color.factor, &[0.5, 0.25, 1.0]);
+    same(&[m.alpha.factor, m.roughness.factor], &[0.5, 0.5]);
+    let NormalInput::Map { texture: normal, scale } = m.normal.unwrap() else { panic!() };
+    same(&[scale], &[1.0]);
+    let (color, (rough, _)) = (m.base_color.texture.unwrap(), m.roughness.texture.unwrap());
+    let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+    for (texture, space) in [(color, ColorSpace::Srgb), (rough, ColorSpace::Linear), (normal, ColorSpace::Linear)] {
+        let TextureTransform([u, v]) = texture.transform;
+        same(&u, &[2.0 * cos, 3.0 * sin, 0.25]);
+        same(&v, &[-2.0 * sin, 3.0 * cos, 0.5]);
+        assert_eq!(read.texture(texture.texture).1.color_space, space);
+    }
+}
+
+/// MaterialX's own graph in numbers: without a turn of the hue each channel is a line of a few steps.
+#[test]
+fn colors_are_corrected_in_order() {
+    let nodes = "def Shader \"c\" { uniform token info:id = \"ND_colorcorrect_color3\"
+        color3f inputs:in = (0.5, 0.25, 0.125)
+        float inputs:saturation = 0.5
+        float inputs:gamma = 2
+        float inputs:lift = 0.1
+        float inputs:gain = 1.5
+        float inputs:contrast = 0.8
+        float inputs:contrastpivot = 0.4
+        float inputs:exposure = -1
+        color3f outputs:out }";
+    let surface = "color3f inputs:base_color.connect = </m/c.outputs:out>";
+    let read = mtlx("ND_gltf_pbr_surfaceshader", surface, nodes);
+    assert_eq!(read.warnings, "");
+    let color = [0.5, 0.25, 0.125];
+    let grey: f64 = color.iter().zip([0.2722287, 0.6740818, 0.0536895]).map(|(c, w)| c * w).sum();
+    let expected = color.map(|c| {
+        let curved = (0.5 * (grey + c)).sqrt();
+        let gained = 1.5 * (curved * 0.9 + 0.1);
+        0.5 * (0.8 * (gained - 0.4) + 0.4)
+    });
+    same(&read.material().base_color.factor, &expected);
+    // A third of the way around: red is green.
+    let turned = nodes.replace("(0.5, 0.25, 0.125)", "(1, 0, 0)").replace("saturation = 0.5", "hue = 0.33333333");
+    let plain = turned
+        .lines()
+        .filter(|line| !["gamma", "lift", "gain", "contrast", "exposure"].iter().any(|n| line.contains(n)));
+    let turned = mtlx("ND_gltf_pbr_surfaceshader", surface, &plain.collect::<Vec<_>>().join("\n"));
+    same(&turned.material().base_color.factor, &[0.0, 1.0, 0.0]);
+}
+
 #[test]
 fn circles_and_foreign_values_do_no_harm() {
     let nodes = "
