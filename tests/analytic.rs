@@ -46,6 +46,28 @@ fn inside_a_closed_glowing_sphere_everything_is_le_over_one_minus_albedo() {
     }
 }
 
+/// A sphere that is scaled to 0 along one axis, whichever of its own that is, is a disk.
+#[test]
+fn what_is_scaled_flat_is_there() {
+    let turned = DAffine3::from_rotation_x(0.4) * DAffine3::from_rotation_z(1.0);
+    for (turn, along_y) in [(DAffine3::IDENTITY, 0.0), (turned, 0.0), (turned, 1e-3)] {
+        let mut builder = Builder::default();
+        let material = builder.lambert(1.0);
+        builder.ground(4.0, material);
+        let squashed = DAffine3::from_scale(DVec3::new(1.0, along_y, 1.0)) * turn;
+        builder.sphere(64, true, material, DAffine3::from_translation(DVec3::new(0.0, 0.5, 0.0)) * squashed);
+        sun(&mut builder, PI, 0.0);
+        builder.look([0.0, 1.0, 0.0], DOWN, 2.0);
+        // From above it hides what it shadows.
+        let direct = Settings { max_bounces: 0, ..settings("combined,position", 256) };
+        let picture = picture(&builder.desc, 64, &direct);
+        close(&format!("{along_y}: lit"), mean(&picture, "Combined", 0), 1.0, 1e-3);
+        // The area of a polygon of 128 corners, of a square of 4 by 4, half a metre up.
+        let area = 64.0 * (PI / 64.0).sin();
+        close(&format!("{along_y}: height"), mean(&picture, "Position", 1), 0.5 * area / 16.0, 3e-3);
+    }
+}
+
 #[test]
 fn a_plane_under_a_constant_dome_reflects_its_albedo() {
     let mut builder = Builder::default();
