@@ -1,9 +1,10 @@
 //! A shape placed in render space.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::light::{Profile, Rules};
-use crate::math::{Affine3A, Mat3A};
+use crate::math::MovingTransform;
 use crate::shape::Placement;
 
 /// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
@@ -60,12 +61,10 @@ pub mod mask {
 pub struct Instance {
     /// Index of the shape.
     pub shape: u32,
-    /// The shape's space (object space less its centre) to render space.
-    pub object_to_render: Affine3A,
-    /// Inverse transpose of its linear part: carries normals.
-    pub normal_to_render: Mat3A,
-    /// True where the transform mirrors, which turns the winding around.
-    pub mirrored: bool,
+    /// Where its shape, whose space is object space less its centre, stands at the frame.
+    pub placement: Placement,
+    /// From the shape's space to render space while the shutter is open; `None` for what does not move.
+    pub motion: Option<Arc<MovingTransform>>,
     /// Material of each slot.
     pub materials: Box<[u32]>,
     /// Linear, straight alpha; in place of the vertex colours that its shape lacks.
@@ -90,8 +89,19 @@ impl Instance {
         self.materials[slot.min(self.materials.len() - 1)]
     }
 
-    /// Where its shape stands.
-    pub fn placement(&self) -> Placement<'_> {
-        Placement { transform: &self.object_to_render, normals: &self.normal_to_render, mirrored: self.mirrored }
+    /// Where its shape stands at `time`.
+    #[inline(always)]
+    pub fn placement_at(&self, time: f32) -> Cow<'_, Placement> {
+        match &self.motion {
+            None => Cow::Borrowed(&self.placement),
+            Some(motion) => Cow::Owned(moved(motion, time).unwrap_or(self.placement)),
+        }
     }
+}
+
+// Out of line, so that what stands still has no part in it. `None` where it is squeezed flat on its way.
+#[cold]
+#[inline(never)]
+fn moved(motion: &MovingTransform, time: f32) -> Option<Placement> {
+    Placement::new(&motion.at(time))
 }
