@@ -471,11 +471,12 @@ fn many_overlapping_instances() {
         .map(|i| Instance {
             blas: 0,
             object_to_render: Affine3A::from_translation(if i % 2 == 0 { Vec3::ZERO } else { rng.vec() * 0.01 }),
+            motion: None,
             mask: 1 << (i % 3),
         })
         .collect();
     let bvhs = placed(&[mesh.blas()], &instances);
-    let alone: Vec<_> = instances.iter().step_by(2000).map(|i| (i, placed(&[mesh.blas()], &[*i]))).collect();
+    let alone: Vec<_> = instances.iter().step_by(2000).map(|i| (i, placed(&[mesh.blas()], &[(*i).clone()]))).collect();
     for _ in 0..50 {
         let ray = Ray::new(rng.dir() * 3.0, rng.dir());
         for mask in [1, 2, 4, 7] {

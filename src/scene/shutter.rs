@@ -15,8 +15,8 @@ pub struct Shutter {
     close: f64,
 }
 
-/// Something at keys of time, which grow, of a ray's.
-pub type Keys<T> = Vec<(f32, T)>;
+/// Something at keys of a ray's time, which grow.
+pub type Keys<'a, T> = Vec<(f32, &'a T)>;
 
 impl Shutter {
     /// That of `camera`; `None` where it is open for an instant alone, or blur is off.
@@ -31,7 +31,7 @@ impl Shutter {
 
     /// What is `now` at the frame and `motion` at other times, at keys within the shutter and next to it; `None`
     /// where it stays the same.
-    pub fn keys<T: Clone + PartialEq>(&self, now: &T, motion: &[Motion<T>]) -> Option<Keys<T>> {
+    pub fn keys<'a, T: PartialEq>(&self, now: &'a T, motion: &'a [Motion<T>]) -> Option<Keys<'a, T>> {
         if motion.iter().all(|m| m.value == *now) {
             return None;
         }
@@ -41,17 +41,17 @@ impl Shutter {
         // At the frame itself a sample of the motion comes before.
         keys.sort_by(|a, b| a.0.total_cmp(&b.0));
         let ray_time = |time: f64| ((time - self.open) / (self.close - self.open)) as f32;
-        let mut keys: Keys<&T> = keys.into_iter().map(|(time, value)| (ray_time(time), value)).collect();
+        let mut keys: Keys<'a, T> = keys.into_iter().map(|(time, value)| (ray_time(time), value)).collect();
         keys.dedup_by(|later, earlier| later.0 <= earlier.0);
         let first = keys.iter().rposition(|key| key.0 <= 0.0).unwrap_or(0);
         let last = keys.iter().position(|key| key.0 >= 1.0).unwrap_or(keys.len() - 1);
         let keys = &keys[first.min(last)..=last.max(first)];
         let moves = keys.windows(2).any(|pair| pair[0].1 != pair[1].1);
-        moves.then(|| keys.iter().map(|&(time, value)| (time, value.clone())).collect())
+        moves.then(|| keys.to_vec())
     }
 
     /// The transform of `instance`, where it moves.
-    pub fn transform(&self, instance: &InstanceDesc) -> Option<Keys<DAffine3>> {
+    pub fn transform<'a>(&self, instance: &'a InstanceDesc) -> Option<Keys<'a, DAffine3>> {
         self.keys(&instance.transform, &instance.motion)
     }
 
@@ -74,8 +74,39 @@ impl Shutter {
         };
         self.keys(&camera.transform, &camera.motion).is_some()
             || scene.instances.iter().any(|instance| {
-                (!instance.motion.is_empty() && self.transform(instance).is_some() || deforms(instance.shape))
-                    && is_met(instance)
+                (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(instance)
             })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(shutter: [f64; 2], motion: &[(f64, char)]) -> Option<Vec<(f32, char)>> {
+        let motion: Vec<_> = motion.iter().map(|&(time, value)| Motion { time, value }).collect();
+        let keys = Shutter::between(shutter)?.keys(&'n', &motion)?;
+        Some(keys.into_iter().map(|(time, value)| (time, *value)).collect())
+    }
+
+    #[test]
+    fn keys_are_those_within_the_shutter_and_next_to_it_with_the_frame() {
+        assert_eq!(keys([-0.5, 0.5], &[(-0.5, 'a'), (0.5, 'b')]), Some(vec![(0.0, 'a'), (0.5, 'n'), (1.0, 'b')]));
+        // A sample at the frame is as good as what is known of it.
+        assert_eq!(keys([0.0, 2.0], &[(0.0, 'n'), (2.0, 'b')]), Some(vec![(0.0, 'n'), (1.0, 'b')]));
+        let wide = [(-9.0, 'x'), (-1.0, 'a'), (1.0, 'b'), (9.0, 'y')];
+        assert_eq!(keys([-0.5, 0.5], &wide), Some(vec![(-0.5, 'a'), (0.5, 'n'), (1.5, 'b')]));
+        // The frame lies outside.
+        assert_eq!(keys([1.0, 2.0], &[(1.0, 'a'), (2.0, 'b')]), Some(vec![(0.0, 'a'), (1.0, 'b')]));
+        assert_eq!(keys([1.0, 2.0], &[(1.5, 'a'), (1.75, 'b')]), Some(vec![(-1.0, 'n'), (0.5, 'a'), (0.75, 'b')]));
+    }
+
+    #[test]
+    fn what_stays_the_same_while_the_shutter_is_open_does_not_move() {
+        assert_eq!(keys([-0.5, 0.5], &[]), None);
+        assert_eq!(keys([-0.5, 0.5], &[(-0.5, 'n'), (0.5, 'n')]), None);
+        assert_eq!(keys([-0.5, 0.5], &[(-2.0, 'a'), (-1.0, 'n'), (1.0, 'n'), (2.0, 'b')]), None);
+        assert_eq!(keys([0.25, 0.25], &[(0.0, 'a'), (0.5, 'b')]), None);
+        assert_eq!(keys([0.5, -0.5], &[(-0.5, 'a'), (0.5, 'b')]), None);
     }
 }

@@ -98,7 +98,7 @@ pub fn prepare(
 ) -> (Camera, Option<CameraMotion>) {
     let camera = still(desc, render, size, origin);
     let moving = shutter.and_then(|shutter| shutter.keys(&desc.transform, &desc.motion)).and_then(|keys| {
-        let rigid: Vec<_> = keys.iter().map(|(time, key)| (*time, rigid(key))).collect();
+        let rigid: Vec<_> = keys.into_iter().map(|(time, key)| (time, rigid(key))).collect();
         Some(CameraMotion { to_render: MovingTransform::new(&rigid)?.rebased(DVec3::ZERO, origin) })
     });
     (moving.as_ref().map_or(camera, |motion| motion.at(&camera, 0.5)), moving)

@@ -101,7 +101,7 @@ fn relative(points: &[[f32; 3]], center: DVec3) -> impl Iterator<Item = Vec3> {
 }
 
 /// Keys of points that move, relative to `center`; `None` for those that do not.
-fn moving(keys: Option<Keys<Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
+fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
     let keys = keys?;
     let times = Times::new(keys.iter().map(|key| key.0).collect())?;
     Some((times, keys.iter().map(|(_, points)| relative(points, center).collect()).collect()))
@@ -182,7 +182,10 @@ fn place(
     let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(center);
     let keys = shutter.and_then(|shutter| shutter.transform(desc));
     let motion = match keys {
-        Some(keys) => Some(MovingTransform::new(&keys)?.rebased(center, origin)),
+        Some(keys) => {
+            let keys: Vec<_> = keys.into_iter().map(|(time, key)| (time, *key)).collect();
+            Some(MovingTransform::new(&keys)?.rebased(center, origin))
+        }
         None => None,
     };
     // What is squeezed flat at the frame may be so for an instant.
