@@ -99,7 +99,7 @@ impl Placed {
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
-                Kind::Triangles => blas.closest::<S>(&setup(&to_object, ray), self.id(), &mut best),
+                Kind::Triangles => blas.closest::<S, true>(&setup(&to_object, ray), self.id(), &mut best),
                 Kind::Rounds(rounds) => {
                     blas.closest_round::<S>(rounds, &round_start(&to_object, ray), self.id(), &mut best);
                 }
@@ -122,7 +122,7 @@ impl Placed {
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
-                Kind::Triangles => blas.any::<S>(&setup(&to_object, ray), ray.t_max),
+                Kind::Triangles => blas.any::<S, true>(&setup(&to_object, ray), ray.t_max),
                 Kind::Rounds(rounds) => blas.any_round::<S>(rounds, &round_start(&to_object, ray), ray.t_max),
                 Kind::Moving(moving) => moving.any::<S>(&round_start(&to_object, ray), ray.time, ray.t_max),
             }

@@ -140,7 +140,7 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    (*placed.blas).closest::<S>(local, placed.id(), best);
+                    (*placed.blas).closest::<S, false>(local, placed.id(), best);
                 }
             }
             ControlFlow::Continue(())
@@ -184,7 +184,7 @@ impl Tree {
                         moved = placed.ray(&setup);
                         &moved
                     };
-                    (*placed.blas).any::<S>(local, t_max)
+                    (*placed.blas).any::<S, false>(local, t_max)
                 };
                 if *found {
                     return ControlFlow::Break(());

@@ -166,7 +166,7 @@ impl MeshLight {
 
     /// Corners of triangle `index` of the mesh where the shutter opens, render space.
     pub fn corners(&self, index: u32) -> [Vec3; 3] {
-        self.triangle(index, &self.placed.pose(0.0).to_render, 0.0).p
+        self.triangle(index, &self.placed.pose(0.0, &mut None).to_render, 0.0).p
     }
 
     fn triangle(&self, index: u32, to_render: &Affine3A, time: f32) -> Triangle {
@@ -221,7 +221,8 @@ impl Triangle {
 
 impl Emitter for MeshLight {
     fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let pose = self.placed.pose(at.time);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
         let asked = pose.asked(at);
         let tree = &self.emitters.tree;
         // A strip of the square for each triangle: its points are spread as well as all of them, which
@@ -264,7 +265,8 @@ impl Emitter for MeshLight {
     fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
         let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
-        let pose = self.placed.pose(at.time);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
         let triangle = self.triangle(hit.triangle, &pose.to_render, at.time);
         if triangle.is_level_with(at.p) {
             return 0.0;
@@ -294,7 +296,8 @@ impl Emitter for MeshLight {
 
     fn power(&self, _scene: Bounds) -> f32 {
         let emitters = &self.emitters;
-        let pose = self.placed.pose(0.5);
+        let mut moved = None;
+        let pose = self.placed.pose(0.5, &mut moved);
         let area = |triangle: u32| self.triangle(triangle, &pose.to_render, 0.5).area();
         let power = |triangle: u32| area(triangle) * f64::from(emitters.emission.mean(triangle).luminance());
         let sum: f64 = match &emitters.triangles {

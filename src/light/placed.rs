@@ -1,6 +1,5 @@
 //! Where the emitters of a shape stand, and what that makes of their bounds.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::bounds::Asked;
@@ -75,18 +74,21 @@ impl Placed {
         self.motion = Some(motion);
     }
 
-    /// Where the shape stands at `time`.
+    /// Where the shape stands at `time`; `moved` holds that of one that moves.
     #[inline(always)]
-    pub fn pose(&self, time: f32) -> Cow<'_, Pose> {
+    pub fn pose<'a>(&'a self, time: f32, moved: &'a mut Option<Pose>) -> &'a Pose {
         match &self.motion {
-            None => Cow::Borrowed(&self.still),
-            Some(motion) => Cow::Owned(moved(motion, time).unwrap_or(self.still)),
+            None => &self.still,
+            Some(motion) => {
+                *moved = on_the_way(motion, time);
+                moved.as_ref().unwrap_or(&self.still)
+            }
         }
     }
 
     /// Unoccluded irradiance that the emitters of `tree` may bring to `at`.
     pub fn importance(&self, tree: &LightTree, at: &Receiver) -> f32 {
-        let importance = tree.weigh(&self.pose(at.time).asked(at)).sum * self.importance_scale;
+        let importance = tree.weigh(&self.pose(at.time, &mut None).asked(at)).sum * self.importance_scale;
         match &self.profile {
             None => importance,
             Some(profile) if !profile.reaches(self.bounds.bounds, at.p) => 0.0,
@@ -113,7 +115,7 @@ impl Placed {
 // Out of line, so that what stands still has no part in it. `None` where it is squeezed flat on its way.
 #[cold]
 #[inline(never)]
-fn moved(motion: &MovingTransform, time: f32) -> Option<Pose> {
+fn on_the_way(motion: &MovingTransform, time: f32) -> Option<Pose> {
     let to_render = traced(&motion.at(time));
     Pose::new(to_render, linear(&to_render))
 }

@@ -125,7 +125,8 @@ fn density(cone: &RoundCone, point: &RoundPoint, cofactors: DMat3) -> f64 {
 
 impl Emitter for RoundLight {
     fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let pose = self.placed.pose(at.time);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
         let (asked, cofactors) = (pose.asked(at), cofactors(&pose.to_render));
         let tree = &self.emitters.tree;
         let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(u[0], &asked, SEGMENT))?;
@@ -155,7 +156,8 @@ impl Emitter for RoundLight {
     fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
         let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
-        let pose = self.placed.pose(at.time);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
         let cone = self.emitters.rounds.cone(hit.triangle, at.time).0;
         let point = cone.point(hit.uv);
         let dist = f64::from(hit.dist);
@@ -175,7 +177,7 @@ impl Emitter for RoundLight {
 
     fn power(&self, _scene: Bounds) -> f32 {
         let emitters = &self.emitters;
-        let scale = cofactors(&self.placed.pose(0.5).to_render).determinant().abs().cbrt();
+        let scale = cofactors(&self.placed.pose(0.5, &mut None).to_render).determinant().abs().cbrt();
         let area = |segment: u32| emitters.rounds.cone(segment, 0.5).0.areas().iter().sum::<f64>();
         let power = |segment: u32| area(segment) * f64::from(emitters.emission.mean(segment).luminance());
         let sum: f64 = match &emitters.segments {

@@ -1,6 +1,5 @@
 //! A shape placed in render space.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::light::{Profile, Rules};
@@ -89,12 +88,15 @@ impl Instance {
         self.materials[slot.min(self.materials.len() - 1)]
     }
 
-    /// Where its shape stands at `time`.
+    /// Where its shape stands at `time`; `moved` holds that of one that moves.
     #[inline(always)]
-    pub fn placement_at(&self, time: f32) -> Cow<'_, Placement> {
+    pub fn placement_at<'a>(&'a self, time: f32, moved: &'a mut Option<Placement>) -> &'a Placement {
         match &self.motion {
-            None => Cow::Borrowed(&self.placement),
-            Some(motion) => Cow::Owned(moved(motion, time).unwrap_or(self.placement)),
+            None => &self.placement,
+            Some(motion) => {
+                *moved = on_the_way(motion, time);
+                moved.as_ref().unwrap_or(&self.placement)
+            }
         }
     }
 }
@@ -102,6 +104,6 @@ impl Instance {
 // Out of line, so that what stands still has no part in it. `None` where it is squeezed flat on its way.
 #[cold]
 #[inline(never)]
-fn moved(motion: &MovingTransform, time: f32) -> Option<Placement> {
+fn on_the_way(motion: &MovingTransform, time: f32) -> Option<Placement> {
     Placement::new(&motion.at(time))
 }

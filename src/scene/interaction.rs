@@ -54,8 +54,9 @@ impl Interaction {
     /// the caller's.
     #[inline(always)]
     pub(super) fn on(shape: &Shape, instance: &Instance, primitive: u32, at: [f32; 2], wo: Vec3, time: f32) -> Self {
-        let placement = instance.placement_at(time);
-        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, &placement, time);
+        let mut moved = None;
+        let placement = instance.placement_at(time, &mut moved);
+        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, placement, time);
         let ng = ng.unwrap_or(wo);
         let ns = ns.map_or(ng, |n| {
             let n = n.normalize_or(ng);
@@ -121,14 +122,14 @@ impl Scene {
     /// −1 where the axes of the UVs are mirrored on the surface.
     pub(super) fn handedness(&self, it: &Interaction) -> f32 {
         let sign = tangent_at(self, it).map_or(1.0, |(_, sign)| sign);
-        if self.instances[it.instance as usize].placement_at(it.time).mirrored { -sign } else { sign }
+        if self.instances[it.instance as usize].placement_at(it.time, &mut None).mirrored { -sign } else { sign }
     }
 }
 
 fn tangent_at(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
     let instance = &scene.instances[it.instance as usize];
     let (tangent, sign) = scene.shape(instance).tangent(it.primitive, it.at, it.time)?;
-    Some((instance.placement_at(it.time).to_render.transform_vector3(tangent), sign))
+    Some((instance.placement_at(it.time, &mut None).to_render.transform_vector3(tangent), sign))
 }
 
 /// `n`, bent as little as needed for `wo` to be above its horizon; both `n` and the geometric

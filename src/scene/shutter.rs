@@ -73,9 +73,10 @@ impl Shutter {
             camera || diffuse || glossy || transmission || shadow || instance.catcher || materials.any(emits)
         };
         self.keys(&camera.transform, &camera.motion).is_some()
-            || scene.instances.iter().any(|instance| {
-                (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(instance)
-            })
+            || scene
+                .instances
+                .iter()
+                .any(|instance| (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(instance))
     }
 }
 

@@ -1,7 +1,5 @@
 //! A hit as graphs see it: world and object space in `f64`, worked out as far as a program asks.
 
-use std::borrow::Cow;
-
 use smallvec::SmallVec;
 
 use super::asked::{OfMesh, OfObject};
@@ -81,13 +79,13 @@ impl Spot<'_> {
         if self.it.front { 1.0 } else { -1.0 }
     }
 
-    fn placement(&self) -> Cow<'_, Placement> {
-        self.around.instance.placement_at(self.it.time)
+    fn placement(&self) -> Placement {
+        *self.around.instance.placement_at(self.it.time, &mut None)
     }
 
     /// Columns of mesh space to render space.
     fn to_render(&self) -> DMat3 {
-        let m = &self.placement().to_render.matrix3;
+        let m = self.placement().to_render.matrix3;
         let column = |v: crate::math::Vec3A| crate::math::Vec3::from(v).as_dvec3();
         DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis))
     }

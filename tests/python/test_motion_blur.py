@@ -30,9 +30,13 @@ def penumbra(stage, out, *args):
     return rgb(out)
 
 
-# What a scene is, and by how much columns may be apart: of glowing things sampling alone tells, of lit ones noise, too.
-@pytest.mark.parametrize("scene, apart", [("cube", 0.006), ("wheel", 0.006), ("pan", 0.006), ("sheet", 0.01), ("shade", 0.01)])
-def test_pictures_are_blurred_as_by_cycles(tmp_path, scene, apart):
+# By how much profiles may be apart, and how much nearer the blurred picture must be than the sharp one. Glowing things
+# are sharp but for what moves, lit ones have noise in both pictures.
+@pytest.mark.parametrize(
+    "scene, apart, nearer",
+    [("cube", 0.006, 5.0), ("wheel", 0.006, 5.0), ("pan", 0.006, 5.0), ("sheet", 0.006, 3.0), ("shade", 0.006, 3.0)],
+)
+def test_pictures_are_blurred_as_by_cycles(tmp_path, scene, apart, nearer):
     out = tmp_path / scene
     command = [sys.executable, HERE / "motion_in_cycles.py", scene, str(SPP), out]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
@@ -46,7 +50,7 @@ def test_pictures_are_blurred_as_by_cycles(tmp_path, scene, apart):
         print(f"{scene}, axis {axis}: profiles differ by {profile:.4f}, without blur by {blur:.4f}")
         assert profile < apart
     assert abs(ours.mean() / theirs.mean() - 1.0) < 0.01
-    assert np.abs(sharp - theirs).mean() > 5.0 * np.abs(ours - theirs).mean()
+    assert np.abs(sharp - theirs).mean() > nearer * np.abs(ours - theirs).mean()
 
 
 def around_the_hub(picture):
