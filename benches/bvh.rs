@@ -104,8 +104,11 @@ fn main() {
 
 fn build(scene: &Scene) -> Bvh {
     let blases = scene.meshes.iter().map(|m| Arc::new(Blas::build(&m.points, &m.triangles))).collect();
-    let instances =
-        scene.instances.iter().map(|&(blas, object_to_render)| Instance { blas, object_to_render, mask: 1 }).collect();
+    let instances = scene
+        .instances
+        .iter()
+        .map(|&(blas, object_to_render)| Instance { blas, object_to_render, motion: None, mask: 1 })
+        .collect();
     Bvh::build(blases, instances)
 }
 

@@ -1,11 +1,11 @@
-"""Builds the shipped scenes: `python scenes/make.py [still_life|interior|field|lamps|all]` (Python 3.11, bpy 5.0, numpy)."""
+"""Builds the shipped scenes: `python scenes/make.py [still_life|interior|field|lamps|wheel|all]` (Python 3.11, bpy 5.0, numpy)."""
 import importlib
 import pathlib
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCENES = ("still_life", "interior", "field", "lamps")
+SCENES = ("still_life", "interior", "field", "lamps", "wheel")
 
 
 def main(args):
@@ -17,7 +17,8 @@ def main(args):
     for name in SCENES if "all" in wanted else wanted:
         with tempfile.TemporaryDirectory() as folder:
             importlib.import_module(f"src.{name}").build(HERE, pathlib.Path(folder))
-        print(f"{name}.glb: {(HERE / f'{name}.glb').stat().st_size} bytes")
+        file = next(HERE.glob(f"{name}.[gu]*"))
+        print(f"{file.name}: {file.stat().st_size} bytes")
 
 
 if __name__ == "__main__":

@@ -294,6 +294,8 @@ settings! {
         "Pixel reconstruction filter and its half width in pixels";
     occlusion_maps: bool = "on", Kind::Bool, "on|off",
         "Apply baked occlusion maps to bounced diffuse light, as glTF defines them";
+    motion_blur: bool = "on", Kind::Bool, "on|off",
+        "Blur what moves while the camera's shutter is open";
     seed: u64 = "0", Kind::Int { min: 0, max: u64::MAX }, "N",
         "Seed of every random decision; the same seed gives the same bits";
     threads: u32 = "0", Kind::Int { min: 0, max: 4096 }, "N",

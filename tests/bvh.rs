@@ -99,7 +99,7 @@ impl Mesh {
 }
 
 fn single(mesh: &Mesh) -> Vec<Bvh> {
-    placed(&[mesh.blas()], &[Instance { blas: 0, object_to_render: Affine3A::IDENTITY, mask: u64::MAX }])
+    placed(&[mesh.blas()], &[Instance { blas: 0, object_to_render: Affine3A::IDENTITY, motion: None, mask: u64::MAX }])
 }
 
 /// One structure for each instruction set.
@@ -242,7 +242,10 @@ fn nothing_escapes_from_a_closed_mesh() {
 #[test]
 fn millions_of_rays_stay_inside() {
     let mesh = Mesh::sphere(100, 0.15);
-    let bvh = Bvh::build(vec![mesh.blas()], vec![Instance { blas: 0, object_to_render: Affine3A::IDENTITY, mask: 1 }]);
+    let bvh = Bvh::build(
+        vec![mesh.blas()],
+        vec![Instance { blas: 0, object_to_render: Affine3A::IDENTITY, motion: None, mask: 1 }],
+    );
     let mut rng = Rng(3);
     for _ in 0..2_000_000 {
         let ray = Ray::new(rng.vec() * 0.3, rng.dir());
@@ -379,8 +382,9 @@ fn equal_distances_choose_the_lowest_instance_then_triangle() {
         mesh.push([Vec3::ZERO, Vec3::X, Vec3::Y]);
     }
     let blas = mesh.blas();
-    let instance = Instance { blas: 0, object_to_render: Affine3A::IDENTITY, mask: 1 };
-    let bvhs = placed(&[blas], &[Instance { mask: 2, ..instance }, instance, instance, instance]);
+    let instance = Instance { blas: 0, object_to_render: Affine3A::IDENTITY, motion: None, mask: 1 };
+    let bvhs =
+        placed(&[blas], &[Instance { mask: 2, ..instance.clone() }, instance.clone(), instance.clone(), instance]);
     let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::NEG_Z);
     let hit = shoot(&bvhs, &ray, 1).unwrap();
     assert_eq!((hit.instance, hit.primitive, hit.t), (1, 0, 1.0));
@@ -401,7 +405,7 @@ fn huge_ranges_of_size_in_one_mesh() {
         let [a, b, c] = mesh.corners(i);
         let scale = (b - a).length();
         let middle = (a + b + c) / 3.0;
-        let ray = Ray { o: middle + rng.dir() * scale, d: Vec3::ZERO, t_max: f32::INFINITY };
+        let ray = Ray { o: middle + rng.dir() * scale, d: Vec3::ZERO, t_max: f32::INFINITY, time: 0.0 };
         let ray = Ray { d: middle - ray.o, ..ray };
         let e = exact([a, b, c], &ray);
         if e.is_some_and(|e| e.facing > 0.05 && e.weights.iter().all(|&w| w > 0.05)) {
@@ -437,7 +441,7 @@ fn instances_agree_with_the_transformed_mesh() {
         let mesh = &meshes[k % 3];
         let mut moved = mesh.clone();
         moved.points.iter_mut().for_each(|p| *p = transform.transform_point3(*p));
-        let instance = Instance { blas: (k % 3) as u32, object_to_render: transform, mask: 1 };
+        let instance = Instance { blas: (k % 3) as u32, object_to_render: transform, motion: None, mask: 1 };
         let bvhs = placed(&blases, &[instance]);
         let reference = single(&moved);
         let bounds = reference[0].bounds();
@@ -467,11 +471,12 @@ fn many_overlapping_instances() {
         .map(|i| Instance {
             blas: 0,
             object_to_render: Affine3A::from_translation(if i % 2 == 0 { Vec3::ZERO } else { rng.vec() * 0.01 }),
+            motion: None,
             mask: 1 << (i % 3),
         })
         .collect();
     let bvhs = placed(&[mesh.blas()], &instances);
-    let alone: Vec<_> = instances.iter().step_by(2000).map(|i| (i, placed(&[mesh.blas()], &[*i]))).collect();
+    let alone: Vec<_> = instances.iter().step_by(2000).map(|i| (i, placed(&[mesh.blas()], &[(*i).clone()]))).collect();
     for _ in 0..50 {
         let ray = Ray::new(rng.dir() * 3.0, rng.dir());
         for mask in [1, 2, 4, 7] {
@@ -490,7 +495,7 @@ fn singular_and_infinite_transforms_never_hit() {
     let nan = Affine3A::from_translation(Vec3::NAN);
     let infinite = Affine3A::from_scale(Vec3::INFINITY);
     let good = Affine3A::from_translation(Vec3::X * 10.0);
-    let of = |object_to_render| Instance { blas: 0, object_to_render, mask: 1 };
+    let of = |object_to_render| Instance { blas: 0, object_to_render, motion: None, mask: 1 };
     let missing = Instance { blas: 7, ..of(good) };
     let bvhs = placed(&[mesh.blas()], &[of(flat), of(nan), of(infinite), missing, of(good)]);
     let mut rng = Rng(8);

@@ -127,8 +127,8 @@ fn identity(blas: Arc<Blas>) -> Vec<Bvh> {
 
 /// One structure for each instruction set.
 fn placed(blas: Arc<Blas>, object_to_render: Affine3A) -> Vec<Bvh> {
-    let instance = Instance { blas: 0, object_to_render, mask: 1 };
-    let build = || Bvh::build(vec![blas.clone()], vec![instance]);
+    let instance = Instance { blas: 0, object_to_render, motion: None, mask: 1 };
+    let build = || Bvh::build(vec![blas.clone()], vec![instance.clone()]);
     Isa::available().iter().map(|&isa| build().with_isa(isa).expect("available")).collect()
 }
 

@@ -40,7 +40,7 @@ pub fn ray_sets(scene: &Scene, bvh: &Bvh) -> Vec<RaySet> {
         .map(|&(p, _)| {
             let [corner, a, b] = scene.light;
             let on_light = corner + a * rng.unit_interval() + b * rng.unit_interval();
-            Ray { o: p, d: on_light - p, t_max: 0.9999 }
+            Ray { t_max: 0.9999, ..Ray::new(p, on_light - p) }
         })
         .collect();
     let mut shuffled = diffuse.clone();

@@ -3,9 +3,10 @@
 
 use super::Hit;
 use super::isa::Isa;
+use super::placed::Placed;
 use super::ray::{is_plain, rescaled};
 use super::simd;
-use super::top::{Placed, Tree};
+use super::top::Tree;
 use super::triangle::Best;
 use crate::math::Ray;
 
@@ -16,9 +17,10 @@ pub(super) struct Kernel {
     any: unsafe fn(&Tree, &Ray, u64) -> bool,
 }
 
-/// The queries of an instance of round cones for one instruction set. They are called, and with nothing
-/// that has to be made for them, so that code and registers for triangles are as if there were none.
-pub(super) struct RoundCode {
+/// The queries of an odd instance ([`Placed::is_odd`]) for one instruction set. They are called, and with nothing
+/// that has to be made for them, so that code and registers for triangles that stand still are as if there were
+/// none.
+pub(super) struct OddCode {
     pub closest: unsafe fn(&Placed, &Ray, Best) -> Best,
     pub any: unsafe fn(&Placed, &Ray) -> bool,
 }
@@ -28,26 +30,26 @@ macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
-        unsafe fn closest_round(placed: &Placed, ray: &Ray, best: Best) -> Best {
+        unsafe fn closest_odd(placed: &Placed, ray: &Ray, best: Best) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { placed.closest_round::<$simd>(ray, best) }
+            unsafe { placed.closest_odd::<$simd>(ray, best) }
         }
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
-        unsafe fn any_round(placed: &Placed, ray: &Ray) -> bool {
+        unsafe fn any_odd(placed: &Placed, ray: &Ray) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { placed.any_round::<$simd>(ray) }
+            unsafe { placed.any_odd::<$simd>(ray) }
         }
-        static ROUND: RoundCode = RoundCode { closest: closest_round, any: any_round };
+        static ODD: OddCode = OddCode { closest: closest_odd, any: any_odd };
         $(#[target_feature(enable = $features)])?
         unsafe fn closest_hit(tree: &Tree, ray: &Ray, mask: u64) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { tree.closest::<$simd>(ray, mask, &ROUND) }
+            unsafe { tree.closest::<$simd>(ray, mask, &ODD) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn any_hit(tree: &Tree, ray: &Ray, mask: u64) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { tree.any::<$simd>(ray, mask, &ROUND) }
+            unsafe { tree.any::<$simd>(ray, mask, &ODD) }
         }
         static $name: Kernel = Kernel { isa: $isa, closest: closest_hit, any: any_hit };
         &$name

@@ -4,8 +4,9 @@
 //! balls in object space, a [`Bvh`] places instances of them. Both are trees of 8-wide nodes (`node.rs`) built by the surface area
 //! heuristic (`build/`) and walked by code that is compiled per instruction set and chosen at run
 //! time (`kernel.rs`, [`Isa`]); all of them, the scalar one included, give the same bits. The
-//! triangle test is watertight (`triangle.rs`), round cones are decided in `f64` (`round.rs`). Motion
-//! would be a further kind of node.
+//! triangle test is watertight (`triangle.rs`), round cones are decided in `f64` (`round.rs`). What
+//! moves has code of its own: shapes nodes whose boxes move (`moving.rs`), instances a transform for each ray
+//! (`placed.rs`).
 //!
 //! This and the foreign-function files are the only places of `unsafe` in the crate; the interface is safe.
 
@@ -16,7 +17,9 @@ mod buffer;
 mod build;
 mod isa;
 mod kernel;
+mod moving;
 mod node;
+mod placed;
 mod ray;
 mod round;
 mod simd;
@@ -28,15 +31,19 @@ pub use blas::Blas;
 pub use isa::Isa;
 pub use top::Bvh;
 
-use crate::math::Affine3A;
+use std::sync::Arc;
+
+use crate::math::{Affine3A, MovingTransform};
 
 /// A shape placed in render space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Instance {
     /// Index of the shape in the list given to [`Bvh::build`].
     pub blas: u32,
     /// From object to render space.
     pub object_to_render: Affine3A,
+    /// The same at the time of a ray, where it changes.
+    pub motion: Option<Arc<MovingTransform>>,
     /// A ray sees the instance if its own mask shares a bit with this one.
     pub mask: u64,
 }

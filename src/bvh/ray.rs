@@ -93,7 +93,7 @@ pub(super) fn rescaled(ray: &Ray) -> Option<(Ray, f32)> {
     let scale = |v: Vec3| v * 2.0_f32.powi(-a) * 2.0_f32.powi(-b);
     let t_max = ray.t_max * 2.0_f32.powi(a) * 2.0_f32.powi(b);
     let power = f64::powi(2.0, -exponent) as f32;
-    Some((Ray { o: ray.o, d: scale(ray.d), t_max }, power))
+    Some((Ray { o: ray.o, d: scale(ray.d), t_max, time: ray.time }, power))
 }
 
 #[cfg(test)]
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn extreme_directions_are_scaled_exactly() {
         for length in [1e-44_f32, 1e-30, 1e-10, 1.0, 1e10, 1e38] {
-            let ray = Ray { o: Vec3::ONE, d: Vec3::new(0.0, -length, 0.25 * length), t_max: 3.0 };
+            let ray = Ray { o: Vec3::ONE, d: Vec3::new(0.0, -length, 0.25 * length), t_max: 3.0, time: 0.0 };
             let (scaled, power) = rescaled(&ray).unwrap();
             assert!(is_plain(&scaled));
             let longest = scaled.d.abs().max_element();
@@ -129,7 +129,7 @@ mod tests {
             assert!(!is_plain(&no_direction) && rescaled(&no_direction).is_none());
             assert!(bad == Vec3::ZERO || !is_plain(&nowhere) && rescaled(&nowhere).is_none());
         }
-        let no_end = Ray { o: Vec3::ZERO, d: Vec3::X, t_max: f32::NAN };
+        let no_end = Ray { o: Vec3::ZERO, d: Vec3::X, t_max: f32::NAN, time: 0.0 };
         assert!(!is_plain(&no_end) && rescaled(&no_end).is_none());
     }
 }

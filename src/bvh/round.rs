@@ -55,6 +55,12 @@ pub(super) type Beyond = [Ball; 2];
 /// No ball.
 pub(super) const NONE: Ball = [f32::NAN; 4];
 
+/// What continues a segment, given as balls before, at both ends and after.
+pub(super) fn beyond(balls: &[Ball], [before, first, last, after]: [u32; 4]) -> Beyond {
+    let ball = |i: u32, end: u32| if i == end { NONE } else { balls[i as usize] };
+    [ball(before, first), ball(after, last)]
+}
+
 /// The box of the round cone between two balls; `None` for one that can't be hit. (Several boxes for one that
 /// lies askew, up to eight where each halving leaves 0.5 to 0.7 of the area, took 1.6 to 6 times the memory for
 /// 20,000 hairs and were slower but for hairs of a single piece.)
@@ -133,7 +139,7 @@ unsafe fn near<F: Lanes<BLOCK>>(block: &RoundBlock, ray: &RoundRay) -> u32 {
 #[inline(always)]
 unsafe fn each<F: Lanes<BLOCK>>(
     block: &RoundBlock,
-    beyond: &[Beyond],
+    beyond: impl Fn(u32) -> Beyond,
     ray: &RoundRay,
     mut visit: impl FnMut(u32, &Segment) -> bool,
 ) {
@@ -142,8 +148,7 @@ unsafe fn each<F: Lanes<BLOCK>>(
         let i = lanes.trailing_zeros() as usize & (BLOCK - 1);
         lanes &= lanes - 1;
         let index = block.segments[i];
-        let beyond = beyond.get(index as usize).copied().unwrap_or([[f32::NAN; 4]; 2]);
-        if visit(index, &Segment { ends: block.ends(i), beyond }) {
+        if visit(index, &Segment { ends: block.ends(i), beyond: beyond(index) }) {
             return;
         }
     }
@@ -156,7 +161,7 @@ unsafe fn each<F: Lanes<BLOCK>>(
 #[inline(always)]
 pub(super) unsafe fn closest<F: Lanes<BLOCK>>(
     block: &RoundBlock,
-    beyond: &[Beyond],
+    beyond: impl Fn(u32) -> Beyond,
     ray: &RoundRay,
     instance: u32,
     best: &mut Best,
@@ -177,7 +182,12 @@ pub(super) unsafe fn closest<F: Lanes<BLOCK>>(
 /// # Safety
 /// As for [`Lanes`].
 #[inline(always)]
-pub(super) unsafe fn any<F: Lanes<BLOCK>>(block: &RoundBlock, beyond: &[Beyond], ray: &RoundRay, t_max: f32) -> bool {
+pub(super) unsafe fn any<F: Lanes<BLOCK>>(
+    block: &RoundBlock,
+    beyond: impl Fn(u32) -> Beyond,
+    ray: &RoundRay,
+    t_max: f32,
+) -> bool {
     let mut found = false;
     let visit = |_: u32, segment: &Segment| {
         found = ray.line.hit(segment, |t| t < t_max).is_some();

@@ -1,11 +1,13 @@
 //! Cameras: from a point of the picture to a ray.
 
 mod lens;
+mod motion;
 mod orthographic;
 mod panorama;
 mod perspective;
 
 pub use lens::Lens;
+pub use motion::CameraMotion;
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;
@@ -58,7 +60,7 @@ impl View {
     fn clipped(&self, o: Vec3, d: Vec3) -> Ray {
         let per_t = d.dot(self.forward);
         let start = self.clip_near / per_t;
-        Ray { o: o + d * start, d, t_max: self.clip_far / per_t - start }
+        Ray { t_max: self.clip_far / per_t - start, ..Ray::new(o + d * start, d) }
     }
 }
 

@@ -24,7 +24,7 @@ impl Panorama {
         let (sin_lon, cos_lon) = along(self.longitude, x / self.size[0]).sin_cos();
         let (sin_lat, cos_lat) = along(self.latitude, 1.0 - y / self.size[1]).sin_cos();
         let d = (view.forward * cos_lon + view.right * sin_lon) * cos_lat + view.up * sin_lat;
-        let ray = Ray { o: view.origin + d * view.clip_near, d, t_max: view.clip_far - view.clip_near };
+        let ray = Ray { t_max: view.clip_far - view.clip_near, ..Ray::new(view.origin + d * view.clip_near, d) };
         let spread = (self.latitude[1] - self.latitude[0]).abs() / self.size[1];
         CameraRay { ray, width: spread * view.clip_near, spread }
     }

@@ -21,6 +21,7 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
         rule(mesh.colors.as_ref().is_none_or(|a| attribute_fits(a, points, corners)), "wrong count of colors")?;
         rule(mesh.attributes.iter().all(|a| attribute_fits(&a.values, points, corners)), "wrong count of attributes")?;
         rule(mesh.material_slots.as_ref().is_none_or(|s| s.len() == mesh.triangles.len()), "wrong count of slots")?;
+        rule(mesh.motion.iter().all(|m| m.value.len() == points), "wrong count of points that move")?;
     }
     scene.rounds.iter().try_for_each(|rounds| check_rounds(rounds))?;
     for instance in &scene.instances {
@@ -103,6 +104,7 @@ fn check_rounds(rounds: &RoundsDesc) -> Result<()> {
     rule(rounds.uvs.iter().all(|values| values.len() == points), "wrong count of UVs")?;
     rule(rounds.colors.as_ref().is_none_or(|values| values.len() == points), "wrong count of colors")?;
     rule(rounds.attributes.iter().all(|(_, values)| values.len() == points), "wrong count of attributes")?;
+    rule(rounds.motion.iter().all(|m| m.value.len() == points), "wrong count of points that move")?;
     let ends = || rounds.strands.iter().map(|strand| strand.end);
     let grow = std::iter::once(0).chain(ends()).zip(ends()).all(|(before, end)| before < end);
     let fit = ends().next_back().is_none_or(|end| end as usize == points);

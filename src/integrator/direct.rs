@@ -33,7 +33,8 @@ impl Shading<'_> {
     /// The point as lights see it: what is lit from one side only asks for light from that side.
     pub fn receiver(&self, scene: &Scene) -> Receiver {
         let n = (!self.bsdf.transmits()).then_some(self.frame.n);
-        Receiver { p: self.it.p, n, class: scene.instance(self.it.instance).receiver_class, alone: false }
+        let class = scene.instance(self.it.instance).receiver_class;
+        Receiver { p: self.it.p, n, class, alone: false, time: self.it.time }
     }
 
     /// What is scattered of one sample of one light, MIS-weighted against the directions that the

@@ -5,10 +5,15 @@ use crate::film::{CryptoSample, FirstHit, PixelSample};
 use crate::math::{Frame, Ray, Vec3};
 use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
 
-/// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first.
+/// When the one ray is sent, as it comes from the middle of the pixel and of the lens.
+const MIDDLE: f32 = 0.5;
+
+/// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first, in the middle of
+/// the shutter.
 pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
     let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    let Some(it) = first_opaque(scene, camera_ray.ray) else { return FirstHit::BACKGROUND };
+    let ray = Ray { time: MIDDLE, ..camera_ray.ray };
+    let Some(it) = first_opaque(scene, ray) else { return FirstHit::BACKGROUND };
     FirstHit {
         depth: scene.camera.depth(it.p),
         position: (it.p.as_dvec3() + scene.origin).as_vec3(),

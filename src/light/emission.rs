@@ -9,9 +9,10 @@ pub trait Emission: Send + Sync + std::fmt::Debug {
     /// on a rectangle, whose triangle is 0, at texture coordinates `uv`, v down from the top.
     fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb;
 
-    /// The same towards `wo`, a unit direction in render space, where it is not the same towards all.
-    fn radiance_towards(&self, triangle: u32, uv: [f32; 2], wo: Vec3) -> Rgb {
-        let _ = wo;
+    /// The same towards `wo`, a unit direction in render space, at `time`, 0 to 1 within the shutter, where it is
+    /// not the same towards all and at all times.
+    fn radiance_towards(&self, triangle: u32, uv: [f32; 2], wo: Vec3, time: f32) -> Rgb {
+        let _ = (wo, time);
         self.radiance(triangle, uv)
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::placed::Placed;
 use super::tree::refined;
 use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Profile, Receiver};
-use crate::math::{Affine3A, Bounds, DVec3, Rgb, Vec3, gamma, offset_ray_origin, place_point};
+use crate::math::{Affine3A, Bounds, DVec3, MovingTransform, Rgb, Vec3, gamma, offset_ray_origin, place_point};
 use crate::sampling::warp::{SphericalTriangle, sample_triangle, solid_angle_of_triangle};
 use crate::shape::Mesh;
 
@@ -58,7 +58,10 @@ impl MeshEmitters {
         use rayon::prelude::*;
         let bounds = |triangle: u32| {
             let mean = emission.mean(triangle);
-            let bounds = triangle_bounds(mesh.corners(triangle), mean)?;
+            let bounds = match &mesh.motion {
+                None => triangle_bounds(mesh.corners(triangle), mean)?,
+                Some(motion) => moving_bounds(motion.keys(mesh.triangles[triangle as usize]), mean)?,
+            };
             Some((triangle, bounds))
         };
         let count = u32::try_from(mesh.triangles.len()).ok()?;
@@ -111,11 +114,41 @@ fn triangle_bounds(p: [Vec3; 3], mean: Rgb) -> Option<LightBounds> {
     })
 }
 
+/// Bounds of a triangle over all times, given its corners at each key. Between two keys the cross product of its
+/// edges is a quadratic curve, which stays within the cone of its three control points.
+fn moving_bounds(keys: impl Iterator<Item = [Vec3; 3]>, mean: Rgb) -> Option<LightBounds> {
+    let edges = |p: [Vec3; 3]| [p[1] - p[0], p[2] - p[0]].map(|e| e.as_dvec3());
+    let (mut bounds, mut normals, mut last) = (Bounds::EMPTY, Vec::new(), None);
+    let mut brightest: Option<LightBounds> = None;
+    for p in keys {
+        let [e, f] = edges(p);
+        if let Some([before_e, before_f]) = last.replace([e, f]) {
+            normals.push(before_e.cross(f) + e.cross(before_f));
+        }
+        normals.push(e.cross(f));
+        bounds = bounds.union(Bounds::of_points(p));
+        let brighter = |at: &LightBounds| brightest.is_none_or(|most| at.intensity > most.intensity);
+        brightest = triangle_bounds(p, mean).filter(brighter).or(brightest);
+    }
+    let axis = normals.iter().map(|n| n.normalize_or_zero()).sum::<DVec3>().normalize_or_zero();
+    let cos = normals.iter().map(|n| n.normalize_or_zero().dot(axis)).fold(1.0, f64::min);
+    let cos_normals = if cos > 0.0 { cos as f32 - 1e-5 } else { -1.0 };
+    Some(LightBounds { bounds, axis: axis.as_vec3(), cos_normals, ..brightest? })
+}
+
 impl MeshLight {
     /// The light of `emitters` placed by `to_render`; `None` where that can't be undone.
     pub fn new(emitters: Arc<MeshEmitters>, to_render: Affine3A) -> Option<Self> {
         let placed = Placed::new(&emitters.tree, to_render)?;
         Some(Self { emitters, placed: Arc::new(placed) })
+    }
+
+    /// The same where `motion` has it while the shutter is open.
+    pub fn moving(mut self, motion: Option<Arc<MovingTransform>>) -> Self {
+        if let Some(motion) = motion {
+            Arc::make_mut(&mut self.placed).set_motion(&self.emitters.tree, motion);
+        }
+        self
     }
 
     /// The same with `profile`, without decay.
@@ -131,15 +164,15 @@ impl MeshLight {
         &self.emitters
     }
 
-    /// Corners of triangle `index` of the mesh, render space.
+    /// Corners of triangle `index` of the mesh where the shutter opens, render space.
     pub fn corners(&self, index: u32) -> [Vec3; 3] {
-        self.triangle(index).p
+        self.triangle(index, &self.placed.pose(0.0, &mut None).to_render, 0.0).p
     }
 
-    fn triangle(&self, index: u32) -> Triangle {
+    fn triangle(&self, index: u32, to_render: &Affine3A, time: f32) -> Triangle {
         // Blending the corners rounds as `Mesh::point` does.
-        let place = |p: Vec3| place_point(&self.placed.to_render, p, p.abs() * gamma(7));
-        let corners = self.emitters.mesh.corners(index).map(place);
+        let place = |p: Vec3| place_point(to_render, p, p.abs() * gamma(7));
+        let corners = self.emitters.mesh.corners_at(index, time).map(place);
         let p_err = corners.iter().fold(Vec3::ZERO, |largest, (_, p_err)| largest.max(*p_err));
         let p = corners.map(|(p, _)| p);
         let cross = (p[1] - p[0]).as_dvec3().cross((p[2] - p[0]).as_dvec3());
@@ -188,14 +221,16 @@ impl Triangle {
 
 impl Emitter for MeshLight {
     fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let asked = self.placed.asked(at);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
+        let asked = pose.asked(at);
         let tree = &self.emitters.tree;
         // A strip of the square for each triangle: its points are spread as well as all of them, which
         // those picked by a number that is independent of the square would not be.
         let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(u[0], &asked, TRIANGLE))?;
         let u = [chosen.u, u[1]];
         let index = self.emitters.triangle_of(chosen.item);
-        let triangle = self.triangle(index);
+        let triangle = self.triangle(index, &pose.to_render, at.time);
         if triangle.is_level_with(at.p) {
             return None;
         }
@@ -216,7 +251,7 @@ impl Emitter for MeshLight {
         };
         let [_, b1, b2] = barycentrics.map(|b| b as f32);
         let pdf = (density * f64::from(chosen.pmf)) as f32;
-        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi) * self.placed.factor(-wi);
+        let li = self.emitters.emission.radiance_towards(index, [b1, b2], -wi, at.time) * self.placed.factor(-wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
@@ -230,7 +265,9 @@ impl Emitter for MeshLight {
     fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
         let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
-        let triangle = self.triangle(hit.triangle);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
+        let triangle = self.triangle(hit.triangle, &pose.to_render, at.time);
         if triangle.is_level_with(at.p) {
             return 0.0;
         }
@@ -245,7 +282,7 @@ impl Emitter for MeshLight {
         if !density.is_finite() {
             return 0.0;
         }
-        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&self.placed.asked(at), item))) as f32;
+        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&pose.asked(at), item))) as f32;
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
@@ -259,8 +296,10 @@ impl Emitter for MeshLight {
 
     fn power(&self, _scene: Bounds) -> f32 {
         let emitters = &self.emitters;
-        let power =
-            |triangle: u32| self.triangle(triangle).area() * f64::from(emitters.emission.mean(triangle).luminance());
+        let mut moved = None;
+        let pose = self.placed.pose(0.5, &mut moved);
+        let area = |triangle: u32| self.triangle(triangle, &pose.to_render, 0.5).area();
+        let power = |triangle: u32| area(triangle) * f64::from(emitters.emission.mean(triangle).luminance());
         let sum: f64 = match &emitters.triangles {
             Some(triangles) => triangles.iter().map(|&i| power(i)).sum(),
             None => (0..emitters.mesh.triangles.len() as u32).map(power).sum(),

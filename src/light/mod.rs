@@ -60,6 +60,8 @@ pub struct Receiver {
     /// have a density above 0. Else directions that the surface samples find the light, too, and
     /// light sampling may leave to them what they do better (MIS compensation, Karlík et al. 2019).
     pub alone: bool,
+    /// When it asks, 0 to 1 within the shutter.
+    pub time: f32,
 }
 
 /// What a light sends to a point, as sampled.
@@ -213,6 +215,6 @@ impl Receiver {
     /// A point that light can reach from any side, lit by all lights, whose light the directions that
     /// a surface samples find, too.
     pub fn everywhere(p: Vec3) -> Self {
-        Self { p, n: None, class: 0, alone: false }
+        Self { p, n: None, class: 0, alone: false, time: 0.0 }
     }
 }

@@ -10,7 +10,10 @@ use std::sync::Arc;
 use super::placed::Placed;
 use super::tree::refined;
 use super::{Emission, Emitter, EmitterHit, LightBounds, LightSample, LightTree, Profile, Receiver};
-use crate::math::{Affine3A, Bounds, DMat3, DVec3, Rgb, RoundPoint, Vec3, gamma, offset_ray_origin, place_point};
+use crate::math::{
+    Affine3A, Bounds, DMat3, DVec3, MovingTransform, Rgb, RoundCone, RoundPoint, Vec3, center_of, gamma,
+    offset_ray_origin, place_point,
+};
 use crate::shape::Rounds;
 
 /// Numbers the choice of a segment among those that draw on one random number.
@@ -31,8 +34,13 @@ pub struct RoundEmitters {
 pub struct RoundLight {
     emitters: Arc<RoundEmitters>,
     placed: Arc<Placed>,
-    /// What areas grow by along each axis of a normal: the cofactors of the transform.
-    cofactors: DMat3,
+}
+
+/// What areas grow by along each axis of a normal: the cofactors of the transform.
+fn cofactors(to_render: &Affine3A) -> DMat3 {
+    let m = &to_render.matrix3;
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| Vec3::from(axis).as_dvec3());
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
 }
 
 impl RoundEmitters {
@@ -55,23 +63,24 @@ impl RoundEmitters {
         let Some(segments) = &self.segments else { return Some(segment) };
         segments.binary_search(&segment).ok().map(|i| i as u32)
     }
-
-    fn area(&self, segment: u32) -> f64 {
-        self.rounds.cone(segment).0.areas().iter().sum()
-    }
 }
 
-/// Bounds of a segment that emits `mean`; `None` where that is nothing.
+/// Bounds of a segment that emits `mean`, over all times; `None` where that is nothing.
 fn bounds_of(rounds: &Rounds, segment: u32, mean: Rgb) -> Option<LightBounds> {
-    let (cone, origin) = rounds.cone(segment);
+    let (mut bounds, mut area) = (Bounds::EMPTY, 0.0_f64);
+    for [first, last] in rounds.keys(segment) {
+        let (cone, origin) = (RoundCone::new(first, last), center_of(first));
+        let corners = [origin, origin + cone.axis].into_iter().zip(cone.radii).flat_map(|(p, r)| [p - r, p + r]);
+        bounds = bounds.union(Bounds::of_points(corners.map(DVec3::as_vec3)));
+        area = area.max(cone.areas().iter().sum());
+    }
     // What a convex body shows of its surface is a quarter of it on the mean.
-    let intensity = 0.25 * cone.areas().iter().sum::<f64>() * f64::from(mean.luminance());
+    let intensity = 0.25 * area * f64::from(mean.luminance());
     if !(intensity > 0.0 && intensity.is_finite()) {
         return None;
     }
-    let corners = [origin, origin + cone.axis].into_iter().zip(cone.radii).flat_map(|(p, r)| [p - r, p + r]);
     Some(LightBounds {
-        bounds: Bounds::of_points(corners.map(DVec3::as_vec3)),
+        bounds,
         axis: Vec3::Z,
         cos_normals: -1.0,
         cos_emission: 0.0,
@@ -84,10 +93,15 @@ impl RoundLight {
     /// The light of `emitters` placed by `to_render`; `None` where that can't be undone.
     pub fn new(emitters: Arc<RoundEmitters>, to_render: Affine3A) -> Option<Self> {
         let placed = Placed::new(&emitters.tree, to_render)?;
-        let [x, y, z] = [to_render.matrix3.x_axis, to_render.matrix3.y_axis, to_render.matrix3.z_axis];
-        let [x, y, z] = [x, y, z].map(|axis| Vec3::from(axis).as_dvec3());
-        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-        Some(Self { emitters, placed: Arc::new(placed), cofactors })
+        Some(Self { emitters, placed: Arc::new(placed) })
+    }
+
+    /// The same where `motion` has it while the shutter is open.
+    pub fn moving(mut self, motion: Option<Arc<MovingTransform>>) -> Self {
+        if let Some(motion) = motion {
+            Arc::make_mut(&mut self.placed).set_motion(&self.emitters.tree, motion);
+        }
+        self
     }
 
     /// The same with `profile`, without decay.
@@ -102,32 +116,34 @@ impl RoundLight {
     pub fn emission(&self) -> &dyn Emission {
         &*self.emitters.emission
     }
+}
 
-    /// Density by area at a point of `segment`, in render space.
-    fn density(&self, segment: u32, point: &RoundPoint) -> f64 {
-        1.0 / (self.emitters.area(segment) * (self.cofactors * point.normal).length())
-    }
+/// Density by area at `point` of `cone`, in render space.
+fn density(cone: &RoundCone, point: &RoundPoint, cofactors: DMat3) -> f64 {
+    1.0 / (cone.areas().iter().sum::<f64>() * (cofactors * point.normal).length())
 }
 
 impl Emitter for RoundLight {
     fn sample_li(&self, at: &Receiver, _uc: f32, u: [f32; 2]) -> Option<LightSample> {
-        let asked = self.placed.asked(at);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
+        let (asked, cofactors) = (pose.asked(at), cofactors(&pose.to_render));
         let tree = &self.emitters.tree;
         let chosen = tree.sample_from(&asked, &tree.weigh(&asked), refined(u[0], &asked, SEGMENT))?;
         let segment = self.emitters.segment_of(chosen.item);
-        let (cone, origin) = self.emitters.rounds.cone(segment);
+        let (cone, origin) = self.emitters.rounds.cone(segment, at.time);
         let uv = cone.sample([chosen.u, u[1]].map(f64::from));
         let point = cone.point(uv);
         let local = (origin + point.p).as_vec3();
-        let (on_light, p_err) = place_point(&self.placed.to_render, local, local.abs() * gamma(2));
-        let det = self.cofactors.z_axis.dot(Vec3::from(self.placed.to_render.matrix3.z_axis).as_dvec3());
-        let ng = (self.cofactors * point.normal * det.signum()).normalize_or_zero();
+        let (on_light, p_err) = place_point(&pose.to_render, local, local.abs() * gamma(2));
+        let det = cofactors.z_axis.dot(Vec3::from(pose.to_render.matrix3.z_axis).as_dvec3());
+        let ng = (cofactors * point.normal * det.signum()).normalize_or_zero();
         let to_light = on_light.as_dvec3() - at.p.as_dvec3();
         let dist_squared = to_light.length_squared();
         let wi = to_light / dist_squared.sqrt();
-        let pdf = self.density(segment, &point) * f64::from(chosen.pmf) * dist_squared / ng.dot(wi).abs();
+        let pdf = density(&cone, &point, cofactors) * f64::from(chosen.pmf) * dist_squared / ng.dot(wi).abs();
         let (wi, ng, pdf) = (wi.as_vec3(), ng.as_vec3(), pdf as f32);
-        let li = self.emitters.emission.radiance(segment, uv) * self.placed.factor(-wi);
+        let li = self.emitters.emission.radiance_towards(segment, uv, -wi, at.time) * self.placed.factor(-wi);
         if !(pdf.is_finite() && pdf > 0.0) || li.is_black() {
             return None;
         }
@@ -140,10 +156,14 @@ impl Emitter for RoundLight {
     fn pdf_li(&self, at: &Receiver, wi: Vec3, hit: Option<&EmitterHit>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
         let Some(item) = self.emitters.item_of(hit.triangle) else { return 0.0 };
-        let point = self.emitters.rounds.cone(hit.triangle).0.point(hit.uv);
+        let mut moved = None;
+        let pose = self.placed.pose(at.time, &mut moved);
+        let cone = self.emitters.rounds.cone(hit.triangle, at.time).0;
+        let point = cone.point(hit.uv);
         let dist = f64::from(hit.dist);
-        let density = self.density(hit.triangle, &point) * dist * dist / f64::from(hit.ng.dot(wi).abs());
-        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&self.placed.asked(at), item))) as f32;
+        let density =
+            density(&cone, &point, cofactors(&pose.to_render)) * dist * dist / f64::from(hit.ng.dot(wi).abs());
+        let pdf = (density * f64::from(self.emitters.tree.pmf_of(&pose.asked(at), item))) as f32;
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
@@ -157,8 +177,9 @@ impl Emitter for RoundLight {
 
     fn power(&self, _scene: Bounds) -> f32 {
         let emitters = &self.emitters;
-        let scale = self.cofactors.determinant().abs().cbrt();
-        let power = |segment: u32| emitters.area(segment) * f64::from(emitters.emission.mean(segment).luminance());
+        let scale = cofactors(&self.placed.pose(0.5, &mut None).to_render).determinant().abs().cbrt();
+        let area = |segment: u32| emitters.rounds.cone(segment, 0.5).0.areas().iter().sum::<f64>();
+        let power = |segment: u32| area(segment) * f64::from(emitters.emission.mean(segment).luminance());
         let sum: f64 = match &emitters.segments {
             Some(segments) => segments.iter().map(|&i| power(i)).sum(),
             None => (0..emitters.rounds.len() as u32).map(power).sum(),

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod frame;
+mod motion;
 mod ray;
 mod rgb;
 mod round;
@@ -14,6 +15,7 @@ mod transform;
 pub use bounds::Bounds;
 pub use frame::{Frame, orthonormal_pair};
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+pub use motion::{MovingTransform, Times, traced};
 pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;
 pub use round::{Ball, Foot, RoundCone, RoundPoint, center_of, share_of};

@@ -12,12 +12,14 @@ pub struct Ray {
     pub d: Vec3,
     /// End of the segment, exclusive.
     pub t_max: f32,
+    /// When it sees the scene: 0 where the camera's shutter opens, 1 where it closes.
+    pub time: f32,
 }
 
 impl Ray {
-    /// A ray without end.
+    /// A ray without end, where the shutter opens.
     pub fn new(o: Vec3, d: Vec3) -> Self {
-        Self { o, d, t_max: f32::INFINITY }
+        Self { o, d, t_max: f32::INFINITY, time: 0.0 }
     }
 
     /// The point at `t`.

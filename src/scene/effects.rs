@@ -3,14 +3,17 @@
 //! Absent effects build nothing and cast nothing. Every test of these flags stands at a coarse
 //! point: per pixel, per hit or per bounce.
 
+use super::shutter::Shutter;
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{AlphaMode, Channel, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
+use crate::desc::{AlphaMode, CameraDesc, Channel, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
 /// Effects that a render simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
+    /// Something moves while the shutter is open.
+    pub motion_blur: bool,
     /// Light that arrives at surfaces, but for what the shadow passes of light groups sample.
     pub light: bool,
     /// Light after more than one scattering.
@@ -58,8 +61,9 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// The effects that `scene` calls for under `settings`, for `passes` with the scene's light groups.
-    pub fn of(scene: &SceneDesc, settings: &Settings, passes: &PassSet) -> Self {
+    /// The effects that `scene` as `camera` sees it calls for under `settings`, for `passes` with the scene's light
+    /// groups.
+    pub fn of(scene: &SceneDesc, camera: &CameraDesc, settings: &Settings, passes: &PassSet) -> Self {
         if settings.effects == EffectsMode::All {
             return Self::forced(passes);
         }
@@ -75,6 +79,7 @@ impl Effects {
         // A scene without lights gets a dome.
         let in_background = scene.lights.iter().any(|light| light.kind.is_in_background()) || scene.lights.is_empty();
         Self {
+            motion_blur: Shutter::of(camera, settings).is_some_and(|shutter| shutter.shows_motion(scene, camera)),
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
             cutouts: any(&|m| lets_pass(m) || !is_opaque(scene, m)),
             holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
@@ -95,6 +100,7 @@ impl Effects {
     /// Everything on that the passes can show.
     fn forced(passes: &PassSet) -> Self {
         Self {
+            motion_blur: true,
             light: passes.needs_light(),
             indirect: passes.needs_indirect(),
             cutouts: true,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::light::{Profile, Rules};
-use crate::math::{Affine3A, Mat3A};
+use crate::math::MovingTransform;
 use crate::shape::Placement;
 
 /// Bits of an instance's ray mask; a ray sees an instance that shares a bit with its own mask.
@@ -60,12 +60,10 @@ pub mod mask {
 pub struct Instance {
     /// Index of the shape.
     pub shape: u32,
-    /// The shape's space (object space less its centre) to render space.
-    pub object_to_render: Affine3A,
-    /// Inverse transpose of its linear part: carries normals.
-    pub normal_to_render: Mat3A,
-    /// True where the transform mirrors, which turns the winding around.
-    pub mirrored: bool,
+    /// Where its shape, whose space is object space less its centre, stands at the frame.
+    pub placement: Placement,
+    /// From the shape's space to render space while the shutter is open; `None` for what does not move.
+    pub motion: Option<Arc<MovingTransform>>,
     /// Material of each slot.
     pub materials: Box<[u32]>,
     /// Linear, straight alpha; in place of the vertex colours that its shape lacks.
@@ -90,8 +88,22 @@ impl Instance {
         self.materials[slot.min(self.materials.len() - 1)]
     }
 
-    /// Where its shape stands.
-    pub fn placement(&self) -> Placement<'_> {
-        Placement { transform: &self.object_to_render, normals: &self.normal_to_render, mirrored: self.mirrored }
+    /// Where its shape stands at `time`; `moved` holds that of one that moves.
+    #[inline(always)]
+    pub fn placement_at<'a>(&'a self, time: f32, moved: &'a mut Option<Placement>) -> &'a Placement {
+        match &self.motion {
+            None => &self.placement,
+            Some(motion) => {
+                *moved = on_the_way(motion, time);
+                moved.as_ref().unwrap_or(&self.placement)
+            }
+        }
     }
+}
+
+// Out of line, so that what stands still has no part in it. `None` where it is squeezed flat on its way.
+#[cold]
+#[inline(never)]
+fn on_the_way(motion: &MovingTransform, time: f32) -> Option<Placement> {
+    Placement::new(&motion.at(time))
 }

@@ -33,6 +33,8 @@ pub struct Interaction {
     pub footprint: f32,
     /// The primitive's size in render space; see [`crate::shape::SurfaceGeometry::size`].
     pub size: f32,
+    /// When it is met: [`Ray::time`], which rays that leave it share.
+    pub time: f32,
     /// The path that the ray is part of, where [`super::Effects::light_path`] asks for it.
     pub path: PathState,
 }
@@ -41,7 +43,7 @@ impl Scene {
     /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
     pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
         let instance = &self.instances[hit.instance as usize];
-        let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d);
+        let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d, ray.time);
         let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
         Interaction { instance: hit.instance, footprint, ..it }
     }
@@ -51,8 +53,10 @@ impl Interaction {
     /// A point of `primitive`, seen from `wo` by a ray without width. The index of its instance, here 0, is
     /// the caller's.
     #[inline(always)]
-    pub(super) fn on(shape: &Shape, instance: &Instance, primitive: u32, at: [f32; 2], wo: Vec3) -> Self {
-        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, instance.placement());
+    pub(super) fn on(shape: &Shape, instance: &Instance, primitive: u32, at: [f32; 2], wo: Vec3, time: f32) -> Self {
+        let mut moved = None;
+        let placement = instance.placement_at(time, &mut moved);
+        let SurfaceGeometry { p, p_err, ng, ns, size } = shape.geometry(primitive, at, placement, time);
         let ng = ng.unwrap_or(wo);
         let ns = ns.map_or(ng, |n| {
             let n = n.normalize_or(ng);
@@ -72,6 +76,7 @@ impl Interaction {
             at,
             footprint: 0.0,
             size,
+            time,
             path: PathState::CAMERA,
         }
     }
@@ -117,14 +122,14 @@ impl Scene {
     /// −1 where the axes of the UVs are mirrored on the surface.
     pub(super) fn handedness(&self, it: &Interaction) -> f32 {
         let sign = tangent_at(self, it).map_or(1.0, |(_, sign)| sign);
-        if self.instances[it.instance as usize].mirrored { -sign } else { sign }
+        if self.instances[it.instance as usize].placement_at(it.time, &mut None).mirrored { -sign } else { sign }
     }
 }
 
 fn tangent_at(scene: &Scene, it: &Interaction) -> Option<(Vec3, f32)> {
     let instance = &scene.instances[it.instance as usize];
-    let (tangent, sign) = scene.shape(instance).tangent(it.primitive, it.at)?;
-    Some((instance.object_to_render.transform_vector3(tangent), sign))
+    let (tangent, sign) = scene.shape(instance).tangent(it.primitive, it.at, it.time)?;
+    Some((instance.placement_at(it.time, &mut None).to_render.transform_vector3(tangent), sign))
 }
 
 /// `n`, bent as little as needed for `wo` to be above its horizon; both `n` and the geometric

@@ -12,6 +12,7 @@ mod material;
 mod path_state;
 mod prepare;
 mod shading;
+mod shutter;
 mod spot;
 mod surroundings;
 mod trace;
@@ -31,7 +32,7 @@ use aovs::BackgroundAovs;
 use asked::Asked;
 
 use crate::bvh::Bvh;
-use crate::camera::Camera;
+use crate::camera::{Camera, CameraMotion, CameraRay};
 use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
@@ -40,8 +41,10 @@ use crate::texture::Texture;
 
 /// Everything that a ray can ask.
 pub struct Scene {
-    /// The camera.
+    /// The camera, in the middle of the shutter.
     pub camera: Camera,
+    /// How it moves while the shutter is open.
+    pub camera_motion: Option<CameraMotion>,
     /// Factor of all radiance in the picture.
     pub exposure: f32,
     /// Width and height of the picture in pixels.
@@ -78,6 +81,16 @@ impl Scene {
     /// The placed shape `i`, an index that a hit gives.
     pub fn instance(&self, i: u32) -> &Instance {
         &self.instances[i as usize]
+    }
+
+    /// A ray of the camera at `time`; see [`Camera::lens_ray`].
+    pub fn camera_ray(&self, x: f32, y: f32, time: f32, on_lens: impl FnOnce() -> [f32; 2]) -> CameraRay {
+        let mut found = match &self.camera_motion {
+            None => self.camera.lens_ray(x, y, on_lens),
+            Some(motion) => motion.at(&self.camera, time).lens_ray(x, y, on_lens),
+        };
+        found.ray.time = time;
+        found
     }
 
     /// The shape of `instance`.

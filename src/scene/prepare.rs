@@ -27,6 +27,7 @@ use std::time::{Duration, Instant};
 use super::aovs::BackgroundAovs;
 use super::effects::emits;
 use super::framing::world_bounds;
+use super::shutter::Shutter;
 use super::surroundings::Surroundings;
 use super::{Effects, Ids, Scene};
 use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
@@ -80,7 +81,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let (camera_desc, whole) = camera::choose(&desc, view, &mut warnings)?;
     let size = cropped(&desc, whole)?;
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
-    let camera = camera::prepare(&camera_desc, &desc.render, whole, origin);
+    let shutter = Shutter::of(&camera_desc, settings);
+    let (camera, camera_motion) = camera::prepare(&camera_desc, &desc.render, whole, origin, shutter);
 
     let passes = settings.passes.resolve(&light_groups(&desc), &aovs::declared(&desc));
     let passes = passes.map_err(|what| Error::invalid(&desc.place, what))?;
@@ -88,7 +90,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let catchers = desc.instances.iter().any(|instance| instance.catcher);
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
-    let effects = Effects::of(&desc, settings, &passes);
+    let effects = Effects::of(&desc, &camera_desc, settings, &passes);
     let Materials { list: materials, textures, names, domes, background } =
         materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
@@ -98,7 +100,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     });
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
-    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, cache, &mut warnings);
+    let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, cache, &mut warnings);
     let build_time = start.elapsed();
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 
@@ -129,6 +131,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     let scene = Scene {
         camera,
+        camera_motion,
         exposure: camera::exposure(&camera_desc),
         size,
         origin,
@@ -163,7 +166,9 @@ impl Scene {
         let view = View { camera: None, size: Some(whole) };
         let (camera, whole) = camera::choose(&desc, &view, &mut Warnings::new())?;
         self.size = cropped(&desc, whole)?;
-        self.camera = camera::prepare(&camera, render, whole, self.origin);
+        // Whether anything else moves was found when the scene was prepared.
+        let shutter = Some(camera.shutter).filter(|_| self.effects.motion_blur).and_then(Shutter::between);
+        (self.camera, self.camera_motion) = camera::prepare(&camera, render, whole, self.origin, shutter);
         if let Some(background) = &mut self.background_aovs {
             background.surroundings.camera = self.camera;
         }

@@ -8,7 +8,7 @@ use super::{Asked, Instance};
 use crate::camera::Camera;
 use crate::desc::graph::{Leaf, Quantity, Space, Value};
 use crate::math::{DMat3, DVec3};
-use crate::shape::{Attribute, Mesh, Shape};
+use crate::shape::{Attribute, Mesh, Placement, Shape};
 use crate::texture::graph::{Beside, HERE, Hit, Program};
 use crate::texture::{Texture, TextureRef};
 
@@ -79,23 +79,27 @@ impl Spot<'_> {
         if self.it.front { 1.0 } else { -1.0 }
     }
 
+    fn placement(&self) -> Placement {
+        *self.around.instance.placement_at(self.it.time, &mut None)
+    }
+
     /// Columns of mesh space to render space.
     fn to_render(&self) -> DMat3 {
-        let m = &self.around.instance.object_to_render.matrix3;
+        let m = self.placement().to_render.matrix3;
         let column = |v: crate::math::Vec3A| crate::math::Vec3::from(v).as_dvec3();
         DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis))
     }
 
     /// Where mesh space's origin is in world space, and which point of object space it is.
     fn origins(&self) -> [DVec3; 2] {
-        let translation = crate::math::Vec3::from(self.around.instance.object_to_render.translation).as_dvec3();
+        let translation = crate::math::Vec3::from(self.placement().to_render.translation).as_dvec3();
         [translation + self.around.origin, self.around.shape.center()]
     }
 
     /// Edges of the triangle in render space.
     fn edges(&self) -> Option<[DVec3; 2]> {
         let (mesh, triangle) = self.mesh()?;
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
+        let [a, b, c] = mesh.corners_at(triangle, self.it.time).map(|p| p.as_dvec3());
         let m = self.to_render();
         Some([m * (b - a), m * (c - a)])
     }
@@ -133,10 +137,21 @@ impl Spot<'_> {
     fn object_position(&self, at: Beside) -> DVec3 {
         match self.mesh() {
             Some((mesh, triangle)) => {
-                let corners = mesh.corners(triangle).map(|p| p.to_array());
+                let corners = mesh.corners_at(triangle, self.it.time).map(|p| p.to_array());
                 DVec3::from(self.blend(corners, self.beside(at).uv)) + mesh.center
             }
             None => self.world_to(Quantity::Point, Space::Object, self.world_position(at)),
+        }
+    }
+
+    /// The same on the shape as modelled, whatever deforms it while the shutter is open.
+    fn modelled_position(&self, at: Beside) -> DVec3 {
+        match self.mesh() {
+            Some((mesh, triangle)) if mesh.motion.is_some() => {
+                let corners = mesh.corners(triangle).map(|p| p.to_array());
+                DVec3::from(self.blend(corners, self.beside(at).uv)) + mesh.center
+            }
+            _ => self.object_position(at),
         }
     }
 
@@ -149,9 +164,9 @@ impl Spot<'_> {
         let Some((mesh, triangle)) = self.mesh() else {
             return (self.to_render().transpose() * self.it.ns.as_dvec3()).normalize_or_zero();
         };
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
+        let [a, b, c] = mesh.corners_at(triangle, self.it.time).map(|p| p.as_dvec3());
         let flat = (b - a).cross(c - a);
-        let Some(corners) = mesh.corner_normals(triangle) else { return flat.normalize_or_zero() };
+        let Some(corners) = mesh.corner_normals(triangle, self.it.time) else { return flat.normalize_or_zero() };
         let n = DVec3::from(self.blend(corners.map(|n| n.to_array()), self.beside(at).uv));
         if n == DVec3::ZERO {
             return flat.normalize_or_zero();
@@ -185,7 +200,7 @@ impl Spot<'_> {
         if let Some([x, y, z, _]) = slot.and_then(|slot| self.of_mesh_attribute(slot, at)) {
             return DVec3::new(x, y, z);
         }
-        let share = (self.object_position(at) - *least) * *inverse;
+        let share = (self.modelled_position(at) - *least) * *inverse;
         // A flat box has its middle along that axis.
         DVec3::select(inverse.cmpeq(DVec3::ZERO), DVec3::splat(0.5), share)
     }
@@ -211,7 +226,7 @@ impl Spot<'_> {
     }
 
     fn normal_to_world(&self, n: DVec3) -> DVec3 {
-        let m = self.around.instance.normal_to_render;
+        let m = self.placement().normals;
         (m * crate::math::Vec3A::from(n.as_vec3())).as_dvec3().normalize_or_zero()
     }
 
@@ -287,13 +302,16 @@ impl Hit for Spot<'_> {
             Leaf::Attribute { fallback, .. } => *fallback,
             Leaf::VertexColor => self.vertex_color(at).unwrap_or([1.0; 4]),
             Leaf::SmoothNormal => vector(self.smooth_normal(at)),
-            Leaf::Tangent => match self.around.shape.tangent(it.primitive, it.at) {
+            Leaf::Tangent => match self.around.shape.tangent(it.primitive, it.at, it.time) {
                 Some((tangent, sign)) => {
                     let t = tangent.as_dvec3();
                     [t.x, t.y, t.z, f64::from(sign)]
                 }
                 None => [0.0; 4],
             },
+            Leaf::ObjectLocation if self.around.instance.motion.is_some() => {
+                vector(self.world_from(Quantity::Point, Space::Object, DVec3::ZERO))
+            }
             Leaf::ObjectLocation => self.of_object().map_or([0.0; 4], |object| vector(object.location)),
             Leaf::ObjectColor => self.of_object().map_or([1.0; 4], |object| object.color),
             Leaf::ObjectIndex => [self.of_object().map_or(0.0, |object| object.index); 4],

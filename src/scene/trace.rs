@@ -111,14 +111,14 @@ fn blockers(shadow: Shadow) -> Option<[u64; 2]> {
 impl Interaction {
     /// A ray that leaves this point towards the unit direction `w`.
     pub fn spawn(&self, w: Vec3) -> Ray {
-        Ray::new(offset_ray_origin(self.p, self.p_err, self.ng, w), w)
+        Ray { time: self.time, ..Ray::new(offset_ray_origin(self.p, self.p_err, self.ng, w), w) }
     }
 
     /// The segment from this point to `end`, a point off any surface by more than rounding; its
     /// direction is not unit.
     pub fn spawn_to(&self, end: Vec3) -> Ray {
         let o = offset_ray_origin(self.p, self.p_err, self.ng, end - self.p);
-        Ray { o, d: end - o, t_max: 1.0 }
+        Ray { o, d: end - o, t_max: 1.0, time: self.time }
     }
 
     /// What is left of `ray` behind this point, which it met at `t`.

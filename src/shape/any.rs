@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Mesh, Rounds};
-use crate::math::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, place_point};
+use crate::math::{Affine3A, DAffine3, DVec3, Mat3A, Vec2, Vec3, Vec3A, place_point, traced};
 
 /// A shape in its own space, shared by its instances. A point on it is a primitive, which is a triangle,
 /// a segment or a ball, with the two coordinates on that which a hit gives.
@@ -17,13 +17,30 @@ pub enum Shape {
 
 /// Where a shape stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Placement<'a> {
-    /// From the shape's space.
-    pub transform: &'a Affine3A,
-    /// Carries normals, up to a factor.
-    pub normals: &'a Mat3A,
+pub struct Placement {
+    /// From the shape's space to render space.
+    pub to_render: Affine3A,
+    /// Inverse transpose of its linear part, up to a factor: carries normals.
+    pub normals: Mat3A,
     /// True where the transform mirrors, which turns the winding around.
     pub mirrored: bool,
+}
+
+impl Placement {
+    /// By `to_render`; `None` where that can't be undone or leaves the range of `f32`.
+    pub fn new(to_render: &DAffine3) -> Option<Self> {
+        // Only the direction of normals matters: scaled so that tiny and huge objects stay in range.
+        let normals = to_render.matrix3.inverse().transpose();
+        let largest = normals.to_cols_array().into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let mirrored = to_render.matrix3.determinant() < 0.0;
+        let to_render = traced(to_render);
+        if !(largest.is_finite() && largest > 0.0 && to_render.is_finite()) {
+            return None;
+        }
+        let normals = normals * (1.0 / largest);
+        let [x, y, z] = [normals.x_axis, normals.y_axis, normals.z_axis].map(|axis| axis.as_vec3a());
+        Some(Self { to_render, normals: Mat3A::from_cols(x, y, z), mirrored })
+    }
 }
 
 /// Geometry at a point of a placed shape.
@@ -59,29 +76,29 @@ impl Shape {
         }
     }
 
-    /// The geometry at a point.
-    pub fn geometry(&self, primitive: u32, at: [f32; 2], placement: Placement<'_>) -> SurfaceGeometry {
-        let Placement { transform, normals, mirrored } = placement;
+    /// The geometry at a point at `time`, which is 0 to 1 within the shutter.
+    pub fn geometry(&self, primitive: u32, at: [f32; 2], placement: &Placement, time: f32) -> SurfaceGeometry {
+        let Placement { to_render: transform, normals, mirrored } = placement;
         let carried = |n: Vec3| Vec3::from(*normals * Vec3A::from(n));
         match self {
             Self::Mesh(mesh) => {
-                let local = mesh.point(primitive, at);
+                let local = mesh.point(primitive, at, time);
                 let (p, p_err) = place_point(transform, local.p, local.p_err);
                 // In f64, where the squares of neither huge nor tiny triangles leave the range.
                 let [e1, e2] = local.edges.map(|e| transform.transform_vector3(e).as_dvec3());
                 let cross = e1.cross(e2);
                 let double_area = cross.length();
-                let wound = if mirrored { -cross } else { cross };
+                let wound = if *mirrored { -cross } else { cross };
                 SurfaceGeometry {
                     p,
                     p_err,
                     ng: (double_area > 0.0).then(|| (wound / double_area).as_vec3()),
-                    ns: mesh.normal(primitive, at).map(carried),
+                    ns: mesh.normal(primitive, at, time).map(carried),
                     size: double_area as f32,
                 }
             }
             Self::Rounds(rounds) => {
-                let local = rounds.point(primitive, at);
+                let local = rounds.point(primitive, at, time);
                 let (p, p_err) = place_point(transform, local.p, local.p_err);
                 SurfaceGeometry {
                     p,
@@ -118,11 +135,11 @@ impl Shape {
         }
     }
 
-    /// Tangent in the shape's space, not unit, and the bitangent's sign: along u, or along a strand.
-    pub fn tangent(&self, primitive: u32, at: [f32; 2]) -> Option<(Vec3, f32)> {
+    /// Tangent in the shape's space at `time`, not unit, and the bitangent's sign: along u, or along a strand.
+    pub fn tangent(&self, primitive: u32, at: [f32; 2], time: f32) -> Option<(Vec3, f32)> {
         match self {
-            Self::Mesh(mesh) => mesh.tangent(primitive, at),
-            Self::Rounds(rounds) => rounds.tangent(primitive, at).map(|tangent| (tangent, 1.0)),
+            Self::Mesh(mesh) => mesh.tangent(primitive, at, time),
+            Self::Rounds(rounds) => rounds.tangent(primitive, at, time).map(|tangent| (tangent, 1.0)),
         }
     }
 

@@ -1,5 +1,6 @@
 //! A triangle mesh in its own space, moved so that the middle of its box is the origin.
 
+use super::MeshMotion;
 use crate::math::{DVec3, Vec2, Vec3, gamma};
 
 /// A mesh's data at one corner of a triangle: an index into each attribute, by point or corner.
@@ -40,6 +41,8 @@ pub struct Mesh {
     pub colors: Option<Attribute<[f32; 4]>>,
     /// Material slot of each triangle; `None` for 0.
     pub material_slots: Option<Vec<u16>>,
+    /// Points and normals at other times; `None` for a mesh that keeps its shape.
+    pub motion: Option<Box<MeshMotion>>,
 }
 
 /// A point on a mesh, still in the mesh's space.
@@ -54,9 +57,17 @@ pub struct SurfacePoint {
 }
 
 impl Mesh {
-    /// Points of `triangle`.
+    /// Points of `triangle` as modelled: those of a mesh that keeps its shape.
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].map(|i| self.points[i as usize])
+    }
+
+    /// Points of `triangle` at `time`.
+    pub fn corners_at(&self, triangle: u32, time: f32) -> [Vec3; 3] {
+        match &self.motion {
+            None => self.corners(triangle),
+            Some(motion) => motion.corners(self.triangles[triangle as usize], time),
+        }
     }
 
     /// Material slot of `triangle`.
@@ -66,8 +77,8 @@ impl Mesh {
 
     /// The point at barycentrics `(u, v)` of `triangle`, by interpolation, which is far more exact
     /// than `o + t d` (Pharr et al., *PBR* 4th edition, 6.8.4).
-    pub fn point(&self, triangle: u32, [u, v]: [f32; 2]) -> SurfacePoint {
-        let [a, b, c] = self.corners(triangle);
+    pub fn point(&self, triangle: u32, [u, v]: [f32; 2], time: f32) -> SurfacePoint {
+        let [a, b, c] = self.corners_at(triangle, time);
         let w = 1.0 - u - v;
         let p = a * w + b * u + c * v;
         let magnitude = (a * w).abs() + (b * u).abs() + (c * v).abs();
@@ -75,14 +86,17 @@ impl Mesh {
     }
 
     /// Shading normal, not yet unit; `None` for a faceted mesh.
-    pub fn normal(&self, triangle: u32, uv: [f32; 2]) -> Option<Vec3> {
-        let normals = self.normals.as_ref()?;
-        Some(blend(normals.at(triangle, self.triangles[triangle as usize]), uv))
+    pub fn normal(&self, triangle: u32, uv: [f32; 2], time: f32) -> Option<Vec3> {
+        Some(blend(self.corner_normals(triangle, time)?, uv))
     }
 
     /// Shading normals of the corners of `triangle`; `None` for a faceted mesh.
-    pub fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
-        Some(self.normals.as_ref()?.at(triangle, self.triangles[triangle as usize]))
+    pub fn corner_normals(&self, triangle: u32, time: f32) -> Option<[Vec3; 3]> {
+        let (normals, indices) = (self.normals.as_ref()?, self.triangles[triangle as usize]);
+        Some(match &self.motion {
+            None => normals.at(triangle, indices),
+            Some(motion) => motion.normals(triangle, indices, time)?,
+        })
     }
 
     /// UV of set `set` at the corners of `triangle`; `None` where the mesh has no such set.
@@ -111,9 +125,14 @@ impl Mesh {
     }
 
     /// Tangent, not unit, and the bitangent's sign.
-    pub fn tangent(&self, triangle: u32, uv: [f32; 2]) -> Option<(Vec3, f32)> {
+    pub fn tangent(&self, triangle: u32, uv: [f32; 2], time: f32) -> Option<(Vec3, f32)> {
         let values = self.tangents.as_ref()?.at(triangle, self.triangles[triangle as usize]);
-        Some((blend(values.map(|t| Vec3::new(t[0], t[1], t[2])), uv), values[0][3]))
+        let tangent = blend(values.map(|t| Vec3::new(t[0], t[1], t[2])), uv);
+        let tangent = match &self.motion {
+            None => tangent,
+            Some(_) => carried(tangent, self.corners(triangle), self.corners_at(triangle, time)),
+        };
+        Some((tangent, values[0][3]))
     }
 
     /// Vertex colour with alpha.
@@ -135,7 +154,21 @@ impl Mesh {
             + self.uvs.iter().map(size).sum::<usize>()
             + self.tangents.as_ref().map_or(0, size)
             + self.colors.as_ref().map_or(0, size)
+            + self.motion.as_ref().map_or(0, |motion| motion.bytes())
     }
+}
+
+/// `along`, a direction in the plane of the triangle `from`, as the deformation to the triangle `to` carries it.
+fn carried(along: Vec3, from: [Vec3; 3], to: [Vec3; 3]) -> Vec3 {
+    let [e1, e2] = [from[1] - from[0], from[2] - from[0]].map(|e| e.as_dvec3());
+    let (along, n) = (along.as_dvec3(), e1.cross(e2));
+    let area = n.length_squared();
+    if area == 0.0 {
+        return along.as_vec3();
+    }
+    // along = a e1 + b e2, but for what lies along the normal.
+    let (a, b) = (along.cross(e2).dot(n) / area, e1.cross(along).dot(n) / area);
+    ((to[1] - to[0]).as_dvec3() * a + (to[2] - to[0]).as_dvec3() * b).as_vec3()
 }
 
 fn blend([a, b, c]: [Vec3; 3], [u, v]: [f32; 2]) -> Vec3 {

@@ -2,8 +2,10 @@
 
 mod any;
 mod mesh;
+mod motion;
 mod round;
 
 pub use any::{Placement, Shape, SurfaceGeometry};
 pub use mesh::{Attribute, Mesh, SurfacePoint};
-pub use round::{RoundSurface, Rounds};
+pub use motion::MeshMotion;
+pub use round::{RoundMotion, RoundSurface, Rounds};

@@ -1,6 +1,6 @@
 //! Strands and balls in their own space, moved so that the middle of their box is the origin.
 
-use crate::math::{Ball, DVec3, RoundCone, RoundPoint, Vec2, Vec3, center_of, gamma, share_of};
+use crate::math::{Ball, DVec3, RoundCone, RoundPoint, Times, Vec2, Vec3, center_of, gamma, share_of};
 
 /// Round cones between balls, in object space less `center`.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +18,17 @@ pub struct Rounds {
     pub colors: Option<Vec<[f32; 4]>>,
     /// Material slot of each segment, or ball; `None` for 0.
     pub material_slots: Option<Vec<u16>>,
+    /// Balls at other times; `None` for what keeps its shape.
+    pub motion: Option<Box<RoundMotion>>,
+}
+
+/// Balls at keys of time; between two each goes straight on.
+#[derive(Clone, Debug)]
+pub struct RoundMotion {
+    /// When.
+    pub times: Times,
+    /// For each key all balls.
+    pub keys: Vec<Vec<Ball>>,
 }
 
 /// A point on a round cone, in its space.
@@ -85,10 +96,26 @@ impl Rounds {
         self.segments.as_ref().map_or([segment; 4], |segments| segments[segment as usize]).map(|i| i as usize)
     }
 
-    /// The round cone of `segment`, and the centre that it is relative to.
-    pub fn cone(&self, segment: u32) -> (RoundCone, DVec3) {
+    /// Ball `i` at `time`, moved by the same products and sums as in the acceleration structure.
+    fn ball(&self, i: usize, time: f32) -> Ball {
+        let Some(motion) = &self.motion else { return self.balls[i] };
+        let (stretch, share) = motion.times.at(time);
+        let (from, to) = (motion.keys[stretch][i], motion.keys[stretch + 1][i]);
+        std::array::from_fn(|k| from[k] + (to[k] - from[k]) * share)
+    }
+
+    /// The round cone of `segment` at `time`, and the centre that it is relative to.
+    pub fn cone(&self, segment: u32, time: f32) -> (RoundCone, DVec3) {
         let [_, first, last, _] = self.around(segment);
-        (RoundCone::new(self.balls[first], self.balls[last]), center_of(self.balls[first]))
+        let [first, last] = [first, last].map(|i| self.ball(i, time));
+        (RoundCone::new(first, last), center_of(first))
+    }
+
+    /// Ends of `segment` at each key of time, or as they are.
+    pub fn keys(&self, segment: u32) -> impl Iterator<Item = [Ball; 2]> {
+        let [_, first, last, _] = self.around(segment);
+        let keys = self.motion.as_ref().map_or(std::slice::from_ref(&self.balls), |motion| &motion.keys);
+        keys.iter().map(move |balls| [balls[first], balls[last]])
     }
 
     /// Material slot of `segment`.
@@ -98,18 +125,18 @@ impl Rounds {
 
     /// The point at coordinates `uv` of `segment`: on the surface but for its own rounding, however far
     /// off the ray came.
-    pub fn point(&self, segment: u32, uv: [f32; 2]) -> RoundSurface {
-        let (cone, origin) = self.cone(segment);
+    pub fn point(&self, segment: u32, uv: [f32; 2], time: f32) -> RoundSurface {
+        let (cone, origin) = self.cone(segment, time);
         let point = cone.point(uv);
         let p = (origin + point.p).as_vec3();
-        let ns = self.smooth_normal(segment, uv[0], &point).unwrap_or(point.normal);
+        let ns = self.smooth_normal(segment, uv[0], &point, time).unwrap_or(point.normal);
         let (ng, ns, axis) = (point.normal.as_vec3(), ns.as_vec3(), cone.axis.as_vec3());
         RoundSurface { p, p_err: p.abs() * gamma(2), ng, ns, axis }
     }
 
     /// `None` where the true normal is to be used: on balls and on caps that no smooth joint covers.
-    fn smooth_normal(&self, segment: u32, u: f32, point: &RoundPoint) -> Option<DVec3> {
-        let bend = self.bend(segment)?;
+    fn smooth_normal(&self, segment: u32, u: f32, point: &RoundPoint, time: f32) -> Option<DVec3> {
+        let bend = self.bend(segment, time)?;
         if (u < 0.0 && !bend.is_smooth[0]) || (u > 1.0 && !bend.is_smooth[1]) {
             return None;
         }
@@ -119,23 +146,17 @@ impl Rounds {
     }
 
     /// How the strand runs at both ends of `segment`; `None` for a ball.
-    fn bend(&self, segment: u32) -> Option<Bend> {
-        let [before, first, last, after] = self.around(segment);
-        let own = self.run(first, last)?;
+    fn bend(&self, segment: u32, time: f32) -> Option<Bend> {
+        let [before, first, last, after] = self.around(segment).map(|i| self.ball(i, time));
+        let own = run(first, last)?;
         let joint = |other: Option<Run>| other.and_then(|other| own.joined(&other));
-        let joints = [joint(self.run(before, first)), joint(self.run(last, after))];
+        let joints = [joint(run(before, first)), joint(run(last, after))];
         Some(Bend { ends: joints.map(|joint| joint.unwrap_or(own)), is_smooth: joints.map(|joint| joint.is_some()) })
     }
 
-    /// `None` where one ball is within the other.
-    fn run(&self, first: usize, last: usize) -> Option<Run> {
-        let cone = RoundCone::new(self.balls[first], self.balls[last]);
-        (!cone.is_ball()).then(|| Run { direction: cone.axis.normalize(), slope: cone.slope() })
-    }
-
     /// Direction of the strand, towards its tip; `None` for a ball.
-    pub fn tangent(&self, segment: u32, [u, _]: [f32; 2]) -> Option<Vec3> {
-        self.bend(segment).map(|bend| bend.at(share_of(u)).0.as_vec3())
+    pub fn tangent(&self, segment: u32, [u, _]: [f32; 2], time: f32) -> Option<Vec3> {
+        self.bend(segment, time).map(|bend| bend.at(share_of(u)).0.as_vec3())
     }
 
     /// UV of set `set` at a point; `None` where there is no such set.
@@ -170,7 +191,19 @@ impl Rounds {
             + self.uvs.iter().map(|values| size_of_val(values.as_slice())).sum::<usize>()
             + self.colors.as_deref().map_or(0, size_of_val)
             + self.material_slots.as_deref().map_or(0, size_of_val)
+            + self
+                .motion
+                .iter()
+                .flat_map(|motion| &motion.keys)
+                .map(|balls| size_of_val(balls.as_slice()))
+                .sum::<usize>()
     }
+}
+
+/// `None` where one ball is within the other.
+fn run(first: Ball, last: Ball) -> Option<Run> {
+    let cone = RoundCone::new(first, last);
+    (!cone.is_ball()).then(|| Run { direction: cone.axis.normalize(), slope: cone.slope() })
 }
 
 #[cfg(test)]
@@ -198,12 +231,12 @@ mod tests {
                 let (sin, cos) = (1.4 * f64::from(i) / 1000.0 + 0.05).sin_cos();
                 let far = DVec3::new(cos, sin, 0.2) * 1.2;
                 let height = |k: u32| {
-                    let (cone, origin) = rounds.cone(k);
+                    let (cone, origin) = rounds.cone(k, 0.0);
                     cone.foot(far - origin).distance
                 };
                 let segment = (0..12).min_by(|&a, &b| height(a).total_cmp(&height(b))).unwrap();
-                let (cone, origin) = rounds.cone(segment);
-                let at = rounds.point(segment, cone.coordinates(far - origin));
+                let (cone, origin) = rounds.cone(segment, 0.0);
+                let at = rounds.point(segment, cone.coordinates(far - origin), 0.0);
                 if let Some(last) = last.replace(at) {
                     steps[0] = steps[0].max(at.ng.distance(last.ng));
                     steps[1] = steps[1].max(at.ns.distance(last.ns));
@@ -220,12 +253,12 @@ mod tests {
     #[test]
     fn ends_and_corners_keep_their_true_normals() {
         let rounds = bow(|_| 0.1);
-        let tip = rounds.point(11, [2.0, 0.0]);
-        assert!(tip.ng == tip.ns && tip.ng.dot(rounds.tangent(11, [1.0, 0.0]).unwrap()) > 0.99, "{tip:?}");
+        let tip = rounds.point(11, [2.0, 0.0], 0.0);
+        assert!(tip.ng == tip.ns && tip.ng.dot(rounds.tangent(11, [1.0, 0.0], 0.0).unwrap()) > 0.99, "{tip:?}");
         let balls = vec![[0.0, 0.0, 0.0, 0.1], [1.0, 0.0, 0.0, 0.1], [1.0, 1.0, 0.0, 0.1]];
         let corner = Rounds { balls, segments: Some(vec![[0, 0, 1, 2], [0, 1, 2, 2]]), ..Rounds::default() };
         for (segment, u) in [(0, 0.9), (0, 1.0), (0, 2.5), (1, -2.5), (1, 0.1)] {
-            let at = corner.point(segment, [u, 0.7]);
+            let at = corner.point(segment, [u, 0.7], 0.0);
             assert!(at.ng.distance(at.ns) < 1e-6, "{segment} {u}: {at:?}");
         }
     }

@@ -44,7 +44,7 @@ impl Case {
     }
 
     fn receiver(&self, n: Option<Vec3>, alone: bool) -> Receiver {
-        Receiver { p: self.p, n, class: 0, alone }
+        Receiver { p: self.p, n, class: 0, alone, time: 0.0 }
     }
 
     /// What a ray along `wi` finds: `None` where it misses the light, `Some(None)` for the background.

@@ -55,7 +55,7 @@ type Occluder = Option<Vec3>;
 /// One estimate of the irradiance of all lights: a sample of one light, and where `alone` is false a
 /// direction of the surface, both weighted.
 fn estimate(lights: &LightSet, n: Vec3, alone: bool, occluder: Occluder, sampler: &Sampler) -> f64 {
-    let at = Receiver { p: Vec3::ZERO, n: Some(n), class: 0, alone };
+    let at = Receiver { p: Vec3::ZERO, n: Some(n), class: 0, alone, time: 0.0 };
     let open = |wi: Vec3| occluder.is_none_or(|edge| edge.dot(wi) > 0.0);
     let mut sum = 0.0;
     let u = sampler.get_1d(Dimension::at_bounce(0, Decision::LightChoice));

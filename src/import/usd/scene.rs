@@ -39,10 +39,6 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     if found.iter().any(|found| found.look.linked) {
         light::link(reading, |shape| shape_lights.geometry.get(shape).map(|light| &light.path), &mut scene);
     }
-    if moves(&scene) {
-        let what = "something moves while the shutter is open; motion blur is not rendered yet, all stands still";
-        reading.warnings.borrow_mut().push(&reading.place, what);
-    }
     if scene.instances.is_empty() && scene.lights.is_empty() {
         let what = "shows nothing: it has neither lights nor geometry that is visible";
         reading.warnings.borrow_mut().push(&reading.place, what);
@@ -172,12 +168,4 @@ fn add_camera(reading: &Reading<'_>, placed: &Placed, scene: &mut SceneDesc) {
     if let Some(render) = render.filter(|_| scene.render == RenderDesc::default()) {
         scene.render = render;
     }
-}
-
-/// True where something stands elsewhere at another time of the shutter.
-fn moves(scene: &SceneDesc) -> bool {
-    scene.instances.iter().any(|instance| !instance.motion.is_empty())
-        || scene.meshes.iter().any(|mesh| !mesh.motion.is_empty())
-        || scene.rounds.iter().any(|rounds| !rounds.motion.is_empty())
-        || scene.cameras.iter().any(|camera| !camera.motion.is_empty())
 }

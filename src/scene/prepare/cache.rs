@@ -9,6 +9,7 @@ use crate::desc::{DomeShader, ImageDesc, MeshDesc, RoundsDesc, SceneDesc, Textur
 use crate::error::Warnings;
 use crate::light::Dome;
 use crate::math::DAffine3;
+use crate::scene::shutter::Shutter;
 use crate::shape::Shape;
 use crate::texture::Image;
 
@@ -43,6 +44,8 @@ impl DomeParts {
 #[derive(Default)]
 pub struct Cache {
     on: bool,
+    /// That of what is kept of shapes that move.
+    shutter: Option<Shutter>,
     /// By address, which is that of the description that the entry holds.
     meshes: HashMap<usize, (Arc<MeshDesc>, Ready)>,
     rounds: HashMap<usize, (Arc<RoundsDesc>, Ready)>,
@@ -55,6 +58,15 @@ impl Cache {
     /// One that keeps things; the default keeps nothing, so that a single render holds no memory longer.
     pub fn new() -> Self {
         Self { on: true, ..Self::default() }
+    }
+
+    /// Forgets shapes that move where what was kept of them is for another shutter.
+    pub(super) fn forget_motion_of_other(&mut self, shutter: Option<Shutter>) {
+        if self.shutter != shutter {
+            self.shutter = shutter;
+            self.meshes.retain(|_, (desc, _)| desc.motion.is_empty());
+            self.rounds.retain(|_, (desc, _)| desc.motion.is_empty());
+        }
     }
 
     pub(super) fn mesh(&self, desc: &Arc<MeshDesc>) -> Option<Ready> {

@@ -1,11 +1,12 @@
 //! The camera that was asked for, moved to render space.
 
 use super::View;
-use crate::camera::{self, Camera, Lens, Orthographic, Panorama, Perspective, Projection};
+use crate::camera::{self, Camera, CameraMotion, Lens, Orthographic, Panorama, Perspective, Projection};
 use crate::desc::{CameraDesc, Conform, LensDesc, ProjectionDesc, RenderDesc, SceneDesc};
 use crate::error::{Error, Result, Warnings};
-use crate::math::DVec3;
+use crate::math::{DAffine3, DMat3, DVec3, MovingTransform};
 use crate::scene::framing::framing_camera;
+use crate::scene::shutter::Shutter;
 
 /// Width of a picture that nobody gave a size.
 const DEFAULT_WIDTH: u32 = 960;
@@ -76,19 +77,42 @@ fn usable(camera: CameraDesc, desc: &SceneDesc, size: [u32; 2], warnings: &mut W
     framing_camera(desc, f64::from(size[0]) / f64::from(size[1]))
 }
 
-/// `desc` in render space; `size` is that of the whole picture, of which `render` may want a part.
-pub fn prepare(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
-    // Axes by Gram-Schmidt from the direction of view, so that scale and shear don't matter.
-    let m = desc.transform.matrix3;
+/// `transform` without scale and shear: axes by Gram-Schmidt from the direction of view.
+fn rigid(transform: &DAffine3) -> DAffine3 {
+    let m = transform.matrix3;
     let forward = -m.z_axis.normalize();
     let up = (m.y_axis - forward * m.y_axis.dot(forward)).normalize_or(forward.any_orthonormal_vector());
     let right = forward.cross(up);
     let mirror = if right.dot(m.x_axis) < 0.0 { -1.0 } else { 1.0 };
+    DAffine3 { matrix3: DMat3::from_cols(right * mirror, up, -forward), translation: transform.translation }
+}
+
+/// `desc` in render space, in the middle of `shutter` if it moves then, and how it does; `size` is that of the whole
+/// picture, of which `render` may want a part.
+pub fn prepare(
+    desc: &CameraDesc,
+    render: &RenderDesc,
+    size: [u32; 2],
+    origin: DVec3,
+    shutter: Option<Shutter>,
+) -> (Camera, Option<CameraMotion>) {
+    let camera = still(desc, render, size, origin);
+    let moving = shutter.and_then(|shutter| shutter.keys(&desc.transform, &desc.motion)).and_then(|keys| {
+        let rigid: Vec<_> = keys.into_iter().map(|(time, key)| (time, rigid(key))).collect();
+        Some(CameraMotion { to_render: MovingTransform::new(&rigid)?.rebased(DVec3::ZERO, origin) })
+    });
+    (moving.as_ref().map_or(camera, |motion| motion.at(&camera, 0.5)), moving)
+}
+
+/// `desc` as it stands at the frame.
+fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
+    let rigid = rigid(&desc.transform);
+    let axes = rigid.matrix3;
     let view = camera::View {
-        origin: (desc.transform.translation - origin).as_vec3(),
-        right: (right * mirror).as_vec3(),
-        up: up.as_vec3(),
-        forward: forward.as_vec3(),
+        origin: (rigid.translation - origin).as_vec3(),
+        right: axes.x_axis.as_vec3(),
+        up: axes.y_axis.as_vec3(),
+        forward: -axes.z_axis.as_vec3(),
         clip_near: desc.clip_near as f32,
         clip_far: desc.clip_far as f32,
     };
@@ -188,7 +212,7 @@ mod tests {
         let fov_y = 2.0 * (0.5 * 15.2908_f64 / 50.0).atan();
         let projection = ProjectionDesc::Perspective { fov_y, aspect: Some(20.955 / 15.2908) };
         let at = |size: [u32; 2], x: f32, y: f32| {
-            let d = prepare(&desc(projection, [5.0 / 20.955, 0.0]), &RenderDesc::default(), size, DVec3::ZERO)
+            let d = still(&desc(projection, [5.0 / 20.955, 0.0]), &RenderDesc::default(), size, DVec3::ZERO)
                 .ray(x, y)
                 .ray
                 .d;
@@ -211,7 +235,7 @@ mod tests {
             let [half_width, half_height] = half;
             let projection = ProjectionDesc::Orthographic { half_width, half_height };
             let render = RenderDesc { conform, ..RenderDesc::default() };
-            let camera = prepare(&desc(projection, [0.0; 2]), &render, [100, 100], DVec3::ZERO);
+            let camera = still(&desc(projection, [0.0; 2]), &render, [100, 100], DVec3::ZERO);
             let o = camera.ray(100.0, 0.0).ray.o;
             [o.x, o.y]
         };
@@ -229,7 +253,7 @@ mod tests {
     #[test]
     fn parallel_rays_are_shifted_by_the_frame() {
         let projection = ProjectionDesc::Orthographic { half_width: 2.0, half_height: 1.0 };
-        let ray = prepare(&desc(projection, [0.25, -0.5]), &RenderDesc::default(), [400, 200], DVec3::ZERO)
+        let ray = still(&desc(projection, [0.25, -0.5]), &RenderDesc::default(), [400, 200], DVec3::ZERO)
             .ray(200.0, 100.0)
             .ray;
         assert_eq!((ray.o, ray.d), (Vec3::new(1.0, -1.0, 0.0), Vec3::NEG_Z));

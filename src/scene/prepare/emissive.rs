@@ -114,19 +114,19 @@ impl MaterialEmission {
     }
 
     /// The first value of `program` at a point that is seen from `wo`.
-    fn value(&self, program: &Program, triangle: u32, barycentrics: [f32; 2], wo: Vec3) -> Option<Value> {
+    fn value(&self, program: &Program, triangle: u32, barycentrics: [f32; 2], wo: Vec3, time: f32) -> Option<Value> {
         let Owner { instance, index, asked, camera, origin } = self.owner.as_ref()?;
-        let it = Interaction::on(&self.shape, instance, triangle, barycentrics, wo);
+        let it = Interaction::on(&self.shape, instance, triangle, barycentrics, wo, time);
         let (shape, textures) = (&self.shape, &self.textures);
         let around = Around { shape, instance, index: *index, asked, textures, camera, origin: *origin };
         Some(Spot { around, it: &it }.run(program)[0])
     }
 
-    fn emitted(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3) -> Rgb {
+    fn emitted(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3, time: f32) -> Rgb {
         let slot = self.slot(triangle);
         let Slot { factor, texture, .. } = *slot;
         if let Some([r, g, b, _]) =
-            slot.emission_program().and_then(|program| self.value(program, triangle, barycentrics, wo))
+            slot.emission_program().and_then(|program| self.value(program, triangle, barycentrics, wo, time))
         {
             return (factor * rgb_of([r, g, b])).map(|c| c.max(0.0));
         }
@@ -135,10 +135,10 @@ impl MaterialEmission {
         factor * Rgb::new(r, g, b)
     }
 
-    fn alpha(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3) -> f32 {
+    fn alpha(&self, triangle: u32, barycentrics: [f32; 2], share: f32, wo: Vec3, time: f32) -> f32 {
         let slot = self.slot(triangle);
         let Slot { alpha, alpha_texture, .. } = *slot;
-        let value = slot.alpha_program().and_then(|program| self.value(program, triangle, barycentrics, wo));
+        let value = slot.alpha_program().and_then(|program| self.value(program, triangle, barycentrics, wo, time));
         let texel = value.map(|value| single(value[0])).unwrap_or_else(|| {
             alpha_texture.map_or(1.0, |(input, channel)| {
                 self.look_up(input, triangle, barycentrics, share)[usize::from(channel)]
@@ -160,14 +160,14 @@ impl MaterialEmission {
 
 impl Emission for MaterialEmission {
     fn radiance(&self, triangle: u32, uv: [f32; 2]) -> Rgb {
-        self.radiance_towards(triangle, uv, self.normal(triangle))
+        self.radiance_towards(triangle, uv, self.normal(triangle), 0.0)
     }
 
-    fn radiance_towards(&self, triangle: u32, uv: [f32; 2], wo: Vec3) -> Rgb {
-        let emitted = self.emitted(triangle, uv, 0.0, wo);
+    fn radiance_towards(&self, triangle: u32, uv: [f32; 2], wo: Vec3, time: f32) -> Rgb {
+        let emitted = self.emitted(triangle, uv, 0.0, wo, time);
         match self.slot(triangle).opacity {
             Opacity::Opaque => emitted,
-            opacity => emitted * opacity.of(self.alpha(triangle, uv, 0.0, wo)),
+            opacity => emitted * opacity.of(self.alpha(triangle, uv, 0.0, wo, time)),
         }
     }
 
@@ -187,8 +187,8 @@ impl Emission for MaterialEmission {
             return least;
         }
         let seen = |uv: [f32; 2], share: f32, wo: Vec3| match opacity {
-            Opacity::Opaque => self.emitted(triangle, uv, share, wo),
-            _ => self.emitted(triangle, uv, share, wo) * self.alpha(triangle, uv, share, wo).clamp(0.0, 1.0),
+            Opacity::Opaque => self.emitted(triangle, uv, share, wo, 0.5),
+            _ => self.emitted(triangle, uv, share, wo, 0.5) * self.alpha(triangle, uv, share, wo, 0.5).clamp(0.0, 1.0),
         };
         let n = self.normal(triangle);
         let at = |uv: [f32; 2], share: f32| match slot.asks_view() {
@@ -202,9 +202,9 @@ impl Emission for MaterialEmission {
 }
 
 impl MaterialEmission {
-    /// Unit normal of a triangle in the render space of its owner; any direction where there is none to ask.
+    /// Unit normal of a triangle in the render space of its owner, in the middle of the shutter; any direction where there is none to ask.
     fn normal(&self, triangle: u32) -> Vec3 {
-        let on = |owner: &Owner| Interaction::on(&self.shape, &owner.instance, triangle, [0.25; 2], Vec3::Z).ng;
+        let on = |owner: &Owner| Interaction::on(&self.shape, &owner.instance, triangle, [0.25; 2], Vec3::Z, 0.5).ng;
         self.owner.as_ref().map_or(Vec3::Z, on)
     }
 }
@@ -252,11 +252,14 @@ impl<'a> Emissive<'a> {
                 Shape::Rounds(rounds) => RoundEmitters::new(rounds, emission).map(|e| Emitters::Rounds(Arc::new(e))),
             }
         });
-        let (to_render, profile) = (instance.object_to_render, instance.profile.clone());
+        let (to_render, motion) = (instance.placement.to_render, instance.motion.clone());
+        let profile = instance.profile.clone();
         match emitters.clone()? {
-            Emitters::Mesh(emitters) => MeshLight::new(emitters, to_render).map(|light| light.shaped(profile).into()),
+            Emitters::Mesh(emitters) => {
+                MeshLight::new(emitters, to_render).map(|light| light.moving(motion).shaped(profile).into())
+            }
             Emitters::Rounds(emitters) => {
-                RoundLight::new(emitters, to_render).map(|light| light.shaped(profile).into())
+                RoundLight::new(emitters, to_render).map(|light| light.moving(motion).shaped(profile).into())
             }
         }
     }

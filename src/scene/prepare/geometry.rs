@@ -9,9 +9,10 @@ use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
 use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef};
 use crate::error::Warnings;
-use crate::math::{Affine3A, Bounds, DAffine3, DVec3, Mat3A, Vec2, Vec3};
+use crate::math::{Bounds, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
+use crate::scene::shutter::{Keys, Shutter};
 use crate::scene::{Instance, Material, mask};
-use crate::shape::{self, Mesh, Rounds, Shape};
+use crate::shape::{self, Mesh, MeshMotion, Placement, RoundMotion, Rounds, Shape};
 
 /// Everything that has a place.
 pub struct Geometry {
@@ -29,6 +30,7 @@ pub struct Geometry {
 pub fn prepare(
     desc: &SceneDesc,
     origin: DVec3,
+    shutter: Option<Shutter>,
     materials: &[Material],
     links: &Links,
     cache: &mut Cache,
@@ -42,17 +44,18 @@ pub fn prepare(
     for instance in &desc.instances {
         used[index(instance.shape)] = true;
     }
+    cache.forget_motion_of_other(shutter);
     let meshes = desc.meshes.par_iter().zip(&used).map(|(desc, used)| {
         cache.mesh(desc).unwrap_or_else(|| {
-            let mesh = if *used { prepare_mesh(desc) } else { Mesh::default() };
-            let blas = Blas::build(&mesh.points, &mesh.triangles);
+            let (mesh, blas) =
+                if *used { prepare_mesh(desc, shutter) } else { (Mesh::default(), Blas::build(&[], &[])) };
             (Shape::Mesh(Arc::new(mesh)), Arc::new(blas))
         })
     });
     let rounds = desc.rounds.par_iter().zip(&used[desc.meshes.len()..]).map(|(desc, used)| {
         cache.rounds(desc).unwrap_or_else(|| {
-            let rounds = if *used { prepare_rounds(desc) } else { Rounds::default() };
-            let blas = Blas::rounds(&rounds.balls, rounds.segments.as_deref());
+            let (rounds, blas) =
+                if *used { prepare_rounds(desc, shutter) } else { (Rounds::default(), Blas::build(&[], &[])) };
             (Shape::Rounds(Arc::new(rounds)), Arc::new(blas))
         })
     });
@@ -66,7 +69,8 @@ pub fn prepare(
         if shapes[shape].is_empty() {
             continue;
         }
-        let Some(mut prepared) = place(instance, shape as u32, &shapes[shape], origin, default_material) else {
+        let Some(mut prepared) = place(instance, shape as u32, &shapes[shape], origin, shutter, default_material)
+        else {
             warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
             continue;
         };
@@ -75,7 +79,8 @@ pub fn prepare(
         prepared.receiver_class = links.receiver_class(i);
         boxes.push(bvh::Instance {
             blas: shape as u32,
-            object_to_render: prepared.object_to_render,
+            object_to_render: prepared.placement.to_render,
+            motion: prepared.motion.clone(),
             mask: mask::of(instance.visibility, cutout, emits, instance.catcher, links.blocker_class(i)),
         });
         instances.push(prepared);
@@ -88,22 +93,60 @@ pub fn prepare(
 fn centered(points: &[[f32; 3]]) -> (DVec3, impl Iterator<Item = Vec3>) {
     let bounds = Bounds::of_points(points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
     let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
-    (center, points.iter().map(move |p| (DVec3::from(p.map(f64::from)) - center).as_vec3()))
+    (center, relative(points, center))
 }
 
-fn prepare_rounds(desc: &RoundsDesc) -> Rounds {
+fn relative(points: &[[f32; 3]], center: DVec3) -> impl Iterator<Item = Vec3> {
+    points.iter().map(move |p| (DVec3::from(p.map(f64::from)) - center).as_vec3())
+}
+
+/// Keys of points that move, relative to `center`; `None` for those that do not.
+fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
+    let keys = keys?;
+    let times = Times::new(keys.iter().map(|key| key.0).collect())?;
+    Some((times, keys.iter().map(|(_, points)| relative(points, center).collect()).collect()))
+}
+
+fn prepare_rounds(desc: &RoundsDesc, shutter: Option<Shutter>) -> (Rounds, Blas) {
     let (center, points) = centered(&desc.points);
-    Rounds {
+    let balls = |points: &mut dyn Iterator<Item = Vec3>| {
+        points.zip(&desc.radii).map(|(p, &radius)| [p.x, p.y, p.z, radius]).collect::<Vec<_>>()
+    };
+    let mut rounds = Rounds {
         center,
-        balls: points.zip(&desc.radii).map(|(p, &radius)| [p.x, p.y, p.z, radius]).collect(),
+        balls: balls(&mut points.into_iter()),
         segments: desc.segments(),
         uvs: desc.uvs.iter().map(|set| set.iter().map(|&uv| Vec2::from(uv)).collect()).collect(),
         colors: desc.colors.clone(),
         material_slots: desc.segment_slots(),
-    }
+        motion: None,
+    };
+    let segments = rounds.segments.as_deref();
+    let keys = shutter.and_then(|shutter| shutter.keys(&desc.points, &desc.motion));
+    let Some((times, keys)) = moving(keys, center) else {
+        let blas = Blas::rounds(&rounds.balls, segments);
+        return (rounds, blas);
+    };
+    let keys: Vec<_> = keys.into_iter().map(|points| balls(&mut points.into_iter())).collect();
+    let blas = Blas::moving_rounds(times.clone(), &keys, segments);
+    rounds.motion = Some(RoundMotion { times, keys }.into());
+    (rounds, blas)
 }
 
-fn prepare_mesh(desc: &MeshDesc) -> Mesh {
+fn prepare_mesh(desc: &MeshDesc, shutter: Option<Shutter>) -> (Mesh, Blas) {
+    let mut mesh = still_mesh(desc);
+    let keys = shutter.and_then(|shutter| shutter.keys(&desc.points, &desc.motion));
+    let Some((times, keys)) = moving(keys, mesh.center) else {
+        let blas = Blas::build(&mesh.points, &mesh.triangles);
+        return (mesh, blas);
+    };
+    let blas = Blas::moving(times.clone(), &keys, &mesh.triangles);
+    let motion = MeshMotion::new(times, keys, &mesh.points, &mesh.triangles, mesh.normals.as_ref());
+    mesh.motion = Some(motion.into());
+    (mesh, blas)
+}
+
+fn still_mesh(desc: &MeshDesc) -> Mesh {
     let (center, points) = centered(&desc.points);
     Mesh {
         center,
@@ -114,6 +157,7 @@ fn prepare_mesh(desc: &MeshDesc) -> Mesh {
         tangents: desc.tangents.as_ref().map(|t| convert(t, |&t| t)),
         colors: desc.colors.as_ref().map(|c| convert(c, |&c| c)),
         material_slots: desc.material_slots.clone(),
+        motion: None,
     }
 }
 
@@ -126,33 +170,33 @@ pub fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> sha
 }
 
 /// `desc` in render space; `None` where its transform can't be undone or leaves the range of `f32`.
-fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_material: u32) -> Option<Instance> {
-    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(shape.center());
-    let inverse = to_render.matrix3.inverse();
-    let object_to_render = Affine3A::from_cols(
-        to_render.matrix3.x_axis.as_vec3a(),
-        to_render.matrix3.y_axis.as_vec3a(),
-        to_render.matrix3.z_axis.as_vec3a(),
-        to_render.translation.as_vec3a(),
-    );
-    // Only the direction of normals matters: scaled so that tiny and huge objects stay in range.
-    let normals = inverse.transpose();
-    let largest = normals.to_cols_array().into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    if !(largest.is_finite() && largest > 0.0 && object_to_render.is_finite()) {
-        return None;
-    }
-    let normals = normals * (1.0 / largest);
+fn place(
+    desc: &InstanceDesc,
+    index: u32,
+    shape: &Shape,
+    origin: DVec3,
+    shutter: Option<Shutter>,
+    default_material: u32,
+) -> Option<Instance> {
+    let center = shape.center();
+    let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(center);
+    let keys = shutter.and_then(|shutter| shutter.transform(desc));
+    let motion = match keys {
+        Some(keys) => {
+            let keys: Vec<_> = keys.into_iter().map(|(time, key)| (time, *key)).collect();
+            Some(MovingTransform::new(&keys)?.rebased(center, origin))
+        }
+        None => None,
+    };
+    // What is squeezed flat at the frame may be so for an instant.
+    let on_the_way = || Placement::new(&motion.as_ref()?.at(0.5));
+    let placement = Placement::new(&to_render).or_else(on_the_way)?;
     let slots = desc.materials.iter().map(|m| m.unwrap_or(default_material));
     let materials: Box<[u32]> = if desc.materials.is_empty() { [default_material].into() } else { slots.collect() };
     Some(Instance {
         shape: index,
-        object_to_render,
-        normal_to_render: Mat3A::from_cols(
-            normals.x_axis.as_vec3a(),
-            normals.y_axis.as_vec3a(),
-            normals.z_axis.as_vec3a(),
-        ),
-        mirrored: to_render.matrix3.determinant() < 0.0,
+        placement,
+        motion: motion.map(Arc::new),
         materials,
         color: desc.color,
         light: None,
