@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::surface::ThinFilm;
-use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
+use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Medium, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 
 /// How the sides of a lobe are counted in the passes.
@@ -211,8 +211,8 @@ impl Bsdf {
     /// Draws a direction: `uc` chooses the lobe, `u` the direction. `None` where nothing scatters.
     pub fn sample(&self, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let mut rest = uc;
-        let mut chosen = self.terms.iter().filter(|term| term.pick > 0.0);
-        let mut term = chosen.next()?;
+        let mut chosen = self.terms.iter().enumerate().filter(|(_, term)| term.pick > 0.0);
+        let (mut index, mut term) = chosen.next()?;
         while rest >= term.pick {
             // Rounding may leave a little beyond the last.
             let Some(next) = chosen.next() else {
@@ -220,7 +220,7 @@ impl Bsdf {
                 break;
             };
             rest -= term.pick;
-            term = next;
+            (index, term) = next;
         }
         let uc = (rest / term.pick).min(ONE_MINUS_EPSILON);
         let wo = term.frame.map_or(self.wo, |frame| self.frames[usize::from(frame)].1);
@@ -234,11 +234,20 @@ impl Bsdf {
         if let Some((color, p)) = delta {
             let pdf = term.pick * p;
             let weight = ByLobe::only(lobe, term.color * color * (1.0 / pdf));
-            return (pdf > 0.0).then(|| BsdfSample { wi: self.turned(wi), weight, pdf, lobe, delta: true, eta });
+            let beneath = matches!(term.lobe, AnyLobe::WayIn(_)).then_some(index as u8);
+            return (pdf > 0.0).then(|| BsdfSample { wi: self.turned(wi), weight, pdf, lobe, delta: true, eta, beneath });
         }
         let BsdfEval { f_cos, pdf } = self.value(wi);
         let wi = self.turned(wi);
-        (pdf > 0.0).then(|| BsdfSample { wi, weight: f_cos * (1.0 / pdf), pdf, lobe, delta: false, eta })
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: f_cos * (1.0 / pdf), pdf, lobe, delta: false, eta, beneath: None })
+    }
+
+    /// What a sampled direction that leads beneath the surface leads into; see [`BsdfSample::beneath`].
+    pub fn medium(&self, beneath: u8) -> Option<Medium> {
+        match self.terms.get(usize::from(beneath))?.lobe {
+            AnyLobe::WayIn(way_in) => Some(way_in.medium()),
+            _ => None,
+        }
     }
 
     fn within(&self, frame: u8, wi: Vec3) -> (Vec3, Vec3) {

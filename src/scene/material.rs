@@ -383,6 +383,14 @@ impl Material {
         self.opacity != Opacity::Opaque || self.transparency.is_some()
     }
 
+    /// True where light may go beneath it and come out elsewhere.
+    pub fn has_inside(&self) -> bool {
+        self.parts.iter().any(|part| match &part.closure {
+            Closure::Layered(surface) => surface.subsurface.is_some(),
+            closure => matches!(closure, Closure::Beneath { .. }),
+        })
+    }
+
     /// True where some part of it scatters.
     fn scatters(&self) -> bool {
         !self.parts.is_empty()

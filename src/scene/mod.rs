@@ -7,6 +7,7 @@ mod effects;
 mod framing;
 mod ids;
 mod instance;
+mod inside;
 mod interaction;
 mod material;
 mod path_state;
@@ -65,6 +66,8 @@ pub struct Scene {
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,
+    /// By instance, the shape alone where light may walk in its inside; empty where it does so nowhere.
+    insides: Vec<Option<Bvh>>,
     shapes: Vec<Shape>,
     instances: Vec<Instance>,
     materials: Vec<Material>,

@@ -138,6 +138,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
+        insides: geometry.insides,
         shapes: geometry.shapes,
         instances: geometry.instances,
         materials,

@@ -56,7 +56,11 @@ impl Scene {
             if let Closure::Layered(surface) = &mut closure
                 && let Some([r, g, b, _]) = self.vertex_color(it)
             {
-                surface.base_color *= Rgb::new(r, g, b);
+                let color = Rgb::new(r, g, b);
+                surface.base_color *= color;
+                if let Some(subsurface) = &mut surface.subsurface {
+                    subsurface.color *= color;
+                }
             }
             let normal = part.bends.is_some().then(|| self.bend(it, frame, part, &lookups, &mut closure)).flatten();
             builder.set_normal(normal);

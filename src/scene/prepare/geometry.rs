@@ -23,6 +23,8 @@ pub struct Geometry {
     pub placed: Vec<u32>,
     /// The tree.
     pub bvh: Bvh,
+    /// Of each of `instances` whose inside light may walk in, a tree of its own; empty where there is none.
+    pub insides: Vec<Option<Bvh>>,
 }
 
 /// Prepares all shapes that are placed, in parallel.
@@ -61,6 +63,7 @@ pub fn prepare(
     let (shapes, blases): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
+    let mut insides = Vec::new();
     for (i, instance) in desc.instances.iter().enumerate() {
         let shape = index(instance.shape);
         if shapes[shape].is_empty() {
@@ -78,10 +81,18 @@ pub fn prepare(
             object_to_render: prepared.object_to_render,
             mask: mask::of(instance.visibility, cutout, emits, instance.catcher, links.blocker_class(i)),
         });
+        let has_inside = prepared.materials.iter().any(|&m| materials[m as usize].has_inside());
+        insides.push(has_inside.then(|| {
+            let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1] };
+            Bvh::build(vec![blases[shape].clone()], vec![alone])
+        }));
         instances.push(prepared);
         placed.push(i as u32);
     }
-    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes) }
+    if insides.iter().all(Option::is_none) {
+        insides.clear();
+    }
+    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides }
 }
 
 /// The middle of the box of `points`, and the points relative to it.
