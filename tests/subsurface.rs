@@ -4,9 +4,7 @@
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;
 
-use penumbra::desc::{
-    ColorInput, LightKind, MaterialDesc, ScalarInput, SubsurfaceDesc, SubsurfaceMethod as Method,
-};
+use penumbra::desc::{ColorInput, LightKind, MaterialDesc, ScalarInput, SubsurfaceDesc, SubsurfaceMethod as Method};
 use penumbra::film::Picture;
 use penumbra::math::{DAffine3, DVec3};
 use penumbra::settings::{EffectsMode, Settings};
@@ -85,34 +83,45 @@ fn seen_on_block(material: MaterialDesc, spp: u32) -> [f64; 3] {
 /// Every step and every weight: the light that comes in straight and out again is known.
 #[test]
 fn a_half_space_gives_back_what_chandrasekhar_says() {
-    let colors = [0.3, 0.6, 0.85];
+    let colors = [0.3, 0.6, 0.75];
     let found = seen_on_block(beneath(subsurface(colors, [0.4, 0.2, 0.1], Method::FreePath)), 1024);
     for (color, found) in colors.into_iter().zip(found) {
         close(&format!("color {color}"), found, half_space(albedo_of(color)), 5e-3);
     }
 }
 
-/// The inversion is made for light from everywhere, and for colors, not for directions.
+/// What Cycles 5.0.1 makes of a half space from straight above: Principled BSDF, Roughness 1, Specular IOR Level 0, Subsurface
+/// IOR 1.4, Radius (0.4, 0.2, 0.1) m, under a white world, 16×16 pixels of 512 samples; standard errors up to 0.003. Its walks
+/// end where ours do: it is the white ones that show that.
+const OF_CYCLES: [(Method, f64, [f64; 3], [f64; 3]); 8] = [
+    (Method::RandomWalk, 0.0, [0.2, 0.5, 0.8], [0.1604, 0.4410, 0.7709]),
+    (Method::RandomWalk, 0.0, [0.9, 0.95, 1.0], [0.8806, 0.8993, 0.8951]),
+    (Method::RandomWalk, 0.8, [0.2, 0.5, 0.8], [0.1291, 0.4416, 0.9068]),
+    (Method::RandomWalk, 0.8, [0.9, 0.95, 1.0], [0.9021, 0.9082, 0.9058]),
+    (Method::RandomWalkSkin, 0.0, [0.2, 0.5, 0.8], [0.1841, 0.4762, 0.7932]),
+    (Method::RandomWalkSkin, 0.0, [0.9, 0.95, 1.0], [0.8948, 0.9075, 0.8945]),
+    (Method::RandomWalkSkin, 0.8, [0.2, 0.5, 0.8], [0.1739, 0.4937, 0.9162]),
+    (Method::RandomWalkSkin, 0.8, [0.9, 0.95, 1.0], [0.9142, 0.9190, 0.8673]),
+];
+
 #[test]
-fn a_half_space_is_about_of_the_color_that_was_asked_for() {
-    for (method, worst) in [(Method::RandomWalk, 0.045), (Method::RandomWalkSkin, 0.02), (Method::FreePath, 0.045)] {
-        for anisotropy in [0.0, 0.5, 0.8] {
-            let colors = [0.2, 0.5, 0.8];
-            let beneath_it = SubsurfaceDesc {
-                anisotropy: ScalarInput::constant(anisotropy),
-                ior: ScalarInput::constant(1.4),
-                ..subsurface(colors, [0.4, 0.2, 0.1], method)
-            };
-            let material = MaterialDesc {
-                ior: 1.4,
-                roughness: ScalarInput::constant(1.0),
-                ..beneath(beneath_it)
-            };
-            let found = seen_on_block(material, 256);
-            for (color, found) in colors.into_iter().zip(found) {
-                let off = (found - color).abs();
-                assert!(off < worst, "{method:?}, anisotropy {anisotropy}, color {color}: {found}");
-            }
+fn a_half_space_gives_back_what_cycles_does() {
+    for (method, anisotropy, colors, expected) in OF_CYCLES {
+        let beneath_it = SubsurfaceDesc {
+            anisotropy: ScalarInput::constant(anisotropy),
+            ior: ScalarInput::constant(1.4),
+            ..subsurface(colors, [0.4, 0.2, 0.1], method)
+        };
+        let material = MaterialDesc {
+            ior: 1.4,
+            specular_level: ScalarInput::constant(0.0),
+            roughness: ScalarInput::constant(1.0),
+            ..beneath(beneath_it)
+        };
+        let found = seen_on_block(material, 512);
+        for ((color, found), expected) in colors.into_iter().zip(found).zip(expected) {
+            // Three standard errors of the difference.
+            assert!((found - expected).abs() < 0.011, "{method:?}, {anisotropy}, {color}: {found} for {expected}");
         }
     }
 }

@@ -190,7 +190,9 @@ impl Builder {
             Closure::Diffuse { color, roughness, multiscatter } => {
                 self.add_diffuse(weight, *color, *roughness, *multiscatter);
             }
-            Closure::Beneath { subsurface, alpha } => self.add_beneath(weight * unit(subsurface.weight), subsurface, *alpha),
+            Closure::Beneath { subsurface, alpha } => {
+                self.add_beneath(weight * unit(subsurface.weight), subsurface, *alpha)
+            }
             Closure::Translucent { color } => self.push(weight * *color, Class::Diffuse, None, Translucent),
             Closure::Glossy { color, facets } => {
                 self.add_reflection(weight, Fresnel::Constant(color.map(|c| c.max(0.0))), facets);

@@ -117,7 +117,8 @@ impl Builder {
         let color = subsurface.color.map(unit);
         let weight = weight * color;
         let walks = |radius: f32| radius >= SMALLEST_RADIUS;
-        let of = |walked: bool| weight.zip(subsurface.radius, |w, radius| if walks(radius) == walked { w } else { 0.0 });
+        let of =
+            |walked: bool| weight.zip(subsurface.radius, |w, radius| if walks(radius) == walked { w } else { 0.0 });
         self.add_diffuse(of(false), Rgb::WHITE, 0.0, false);
         if subsurface.radius.to_array().into_iter().any(walks) {
             self.push(of(true), Class::Diffuse, None, way_in(subsurface, color, alpha));

@@ -19,6 +19,7 @@ mod render;
 mod rounds;
 mod shadow;
 mod subsurface;
+mod terminator;
 mod texture;
 
 pub use aov::{AovDesc, AovKind, AovOutput, BackgroundAovs};
@@ -39,6 +40,7 @@ pub use render::{Conform, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
 pub use shadow::ShadowDesc;
 pub use subsurface::{SubsurfaceDesc, SubsurfaceMethod};
+pub use terminator::TerminatorDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use std::sync::Arc;

@@ -11,7 +11,7 @@ use super::shadow::{emitters_along, mesh_weight};
 use super::shadow_pass;
 use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
 use super::{ao, catcher, subsurface};
-use crate::bsdf::{BsdfSample, Builder, ByLobe, Closure, Lobe};
+use crate::bsdf::{BsdfSample, ByLobe, Closure, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
@@ -468,8 +468,7 @@ fn go_beneath(
     path.beta = beta;
     path.vertex += 1;
     let frame = scene.shading_frame(&it);
-    let ng = if it.front { it.ng } else { -it.ng };
-    let mut builder = Builder::new(frame.to_local(it.wo), frame.to_local(ng), it.front);
+    let mut builder = scene.builder(&it, &frame);
     builder.add(Rgb::WHITE, &Closure::Diffuse { color: Rgb::WHITE, roughness: 0.0, multiscatter: false });
     let bsdf = builder.finish();
     let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };

@@ -148,6 +148,8 @@ pub struct Material {
     pub holdout: bool,
     /// Normal map.
     pub normal: Option<NormalInput>,
+    /// True where its normals, or those of a part, are not those of the shape.
+    pub bumps: bool,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
     /// What it gives as the AOVs of the render's passes, in their order; empty where it gives nothing.

@@ -6,8 +6,8 @@ mod asked;
 mod effects;
 mod framing;
 mod ids;
-mod instance;
 mod inside;
+mod instance;
 mod interaction;
 mod material;
 mod path_state;
@@ -15,6 +15,7 @@ mod prepare;
 mod shading;
 mod spot;
 mod surroundings;
+mod terminator;
 mod trace;
 
 pub use effects::Effects;
@@ -24,6 +25,7 @@ pub use interaction::Interaction;
 pub use material::{Coverage, Material};
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
+pub use terminator::Terminator;
 pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;

@@ -27,7 +27,9 @@ use super::effects::emits;
 use super::framing::world_bounds;
 use super::surroundings::Surroundings;
 use super::{Effects, Ids, Scene};
-use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
+use crate::desc::{
+    self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, TerminatorDesc, Visibility,
+};
 use crate::error::{Error, Result, Warnings};
 use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
@@ -95,7 +97,11 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     });
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
-    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, cache, &mut warnings);
+    let terminator = TerminatorDesc {
+        geometry: settings.shadow_terminator_geometry_offset,
+        shading: settings.shadow_terminator_shading_offset,
+    };
+    let mut geometry = geometry::prepare(&desc, origin, &materials, &links, terminator, cache, &mut warnings);
     let build_time = start.elapsed();
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 

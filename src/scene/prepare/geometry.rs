@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::cache::{Cache, Ready};
 use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
-use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef};
+use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef, TerminatorDesc};
 use crate::error::Warnings;
 use crate::math::{Affine3A, Bounds, DAffine3, DVec3, Mat3A, Vec2, Vec3};
 use crate::scene::{Instance, Material, mask};
@@ -27,12 +27,13 @@ pub struct Geometry {
     pub insides: Vec<Option<Bvh>>,
 }
 
-/// Prepares all shapes that are placed, in parallel.
+/// Prepares all shapes that are placed, in parallel; `terminator` is that of objects which have none of their own.
 pub fn prepare(
     desc: &SceneDesc,
     origin: DVec3,
     materials: &[Material],
     links: &Links,
+    terminator: TerminatorDesc,
     cache: &mut Cache,
     warnings: &mut Warnings,
 ) -> Geometry {
@@ -69,7 +70,8 @@ pub fn prepare(
         if shapes[shape].is_empty() {
             continue;
         }
-        let Some(mut prepared) = place(instance, shape as u32, &shapes[shape], origin, default_material) else {
+        let placed_at = place(instance, shape as u32, &shapes[shape], origin, default_material, terminator);
+        let Some(mut prepared) = placed_at else {
             warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
             continue;
         };
@@ -137,7 +139,14 @@ pub fn convert<T, U>(attribute: &desc::Attribute<T>, f: impl Fn(&T) -> U) -> sha
 }
 
 /// `desc` in render space; `None` where its transform can't be undone or leaves the range of `f32`.
-fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_material: u32) -> Option<Instance> {
+fn place(
+    desc: &InstanceDesc,
+    index: u32,
+    shape: &Shape,
+    origin: DVec3,
+    default_material: u32,
+    terminator: TerminatorDesc,
+) -> Option<Instance> {
     let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(shape.center());
     let inverse = to_render.matrix3.inverse();
     let object_to_render = Affine3A::from_cols(
@@ -172,5 +181,6 @@ fn place(desc: &InstanceDesc, index: u32, shape: &Shape, origin: DVec3, default_
         profile: None,
         holdout: desc.holdout,
         catcher: desc.catcher,
+        terminator: desc.terminator.unwrap_or(terminator).into(),
     })
 }

@@ -143,11 +143,7 @@ impl Builder<'_> {
         (facets, Bends { anisotropy, ..Bends::default() })
     }
 
-    fn subsurface(
-        &mut self,
-        inputs: &mut Inputs<'_>,
-        desc: &SubsurfaceDesc,
-    ) -> Subsurface<ColorInput, ScalarInput> {
+    fn subsurface(&mut self, inputs: &mut Inputs<'_>, desc: &SubsurfaceDesc) -> Subsurface<ColorInput, ScalarInput> {
         Subsurface {
             weight: self.scalar(inputs, &desc.weight),
             color: self.color(inputs, &desc.color),
