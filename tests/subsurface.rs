@@ -20,6 +20,7 @@ fn subsurface(color: [f64; 3], radius: [f64; 3], method: Method) -> SubsurfaceDe
         anisotropy: ScalarInput::constant(0.0),
         ior: ScalarInput::constant(1.0),
         method,
+        shallow: false,
     }
 }
 
@@ -126,6 +127,16 @@ fn a_half_space_gives_back_what_cycles_does() {
     }
 }
 
+/// A profile knows no losses: the plane is of the color itself.
+#[test]
+fn a_profile_on_a_plane_gives_back_the_color() {
+    let colors = [0.2, 0.5, 1.0];
+    let found = seen_on_block(beneath(subsurface(colors, [0.4, 0.2, 0.1], Method::Burley)), 1024);
+    for (color, found) in colors.into_iter().zip(found) {
+        close(&format!("color {color}"), found, color, 8e-3);
+    }
+}
+
 fn sphere_under_dome(material: MaterialDesc, spp: u32) -> Picture {
     let mut builder = Builder::default();
     let material = builder.material(material);
@@ -163,10 +174,12 @@ fn without_radius_it_is_lamberts_surface() {
         ..MaterialDesc::default()
     };
     let lambert = sphere_under_dome(lambert, 16);
+    let profile = sphere_under_dome(beneath(subsurface(color, [1e-2; 3], Method::Burley)), 256);
     let none = sphere_under_dome(beneath(subsurface(color, [0.0; 3], Method::RandomWalk)), 16);
     let little = sphere_under_dome(beneath(subsurface(color, [1e-3; 3], Method::RandomWalkSkin)), 256);
     for channel in 0..3 {
         let expected = mean(&lambert, "Combined", channel);
+        close("profile", mean(&profile, "Combined", channel), expected, 1e-2);
         close("none", mean(&none, "Combined", channel), expected, 1e-6);
         assert!((mean(&little, "Combined", channel) - expected).abs() < 0.02, "{channel}");
     }

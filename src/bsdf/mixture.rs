@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::softening::Softening;
 use super::surface::ThinFilm;
-use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Medium, Surface};
+use super::{Beneath, BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 
 /// How the sides of a lobe are counted in the passes.
@@ -282,9 +282,9 @@ impl Bsdf {
     }
 
     /// What a sampled direction that leads beneath the surface leads into; see [`BsdfSample::beneath`].
-    pub fn medium(&self, beneath: u8) -> Option<Medium> {
+    pub fn beneath(&self, beneath: u8) -> Option<Beneath> {
         match self.terms.get(usize::from(beneath))?.lobe {
-            AnyLobe::WayIn(way_in) => Some(way_in.medium()),
+            AnyLobe::WayIn(way_in) => Some(way_in.beneath()),
             _ => None,
         }
     }

@@ -18,6 +18,7 @@ mod medium;
 mod mixture;
 mod oren_nayar;
 mod principled;
+mod profile;
 #[cfg(test)]
 mod quadrature;
 mod reflection;
@@ -37,7 +38,8 @@ pub use conductor::Conductor;
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
 pub use medium::Medium;
 pub use mixture::{Bsdf, Builder};
+pub use profile::Profile;
 pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
 pub use softening::Softening;
-pub use subsurface::{Method, Subsurface};
+pub use subsurface::{Beneath, Inside, Method, Subsurface};
 pub use surface::{Coat, Sheen, Stretched, Surface, ThinFilm};

@@ -1,7 +1,7 @@
 //! The way beneath a surface: where light that a walk inside will scatter goes in.
 //!
 //! As Cycles 5.0 has it: through microfacets that refract, or half of the time cosine-distributed (*Random Walk
-//! (Skin)*). What it meets there is a [`Medium`]; it comes out by Lambert's law.
+//! (Skin)*). What it meets there is a [`Medium`], or a [`Profile`] alone; it comes out by Lambert's law.
 
 use super::closure::unit;
 use super::fresnel::refract;
@@ -9,6 +9,7 @@ use super::ggx::Ggx;
 use super::lobe::{Drawn, Scatter, Sides, Value};
 use super::medium::{Inversion, Medium};
 use super::mixture::{Builder, Class};
+use super::profile::Profile;
 use super::thin::mirrored;
 use crate::math::{Rgb, Vec3};
 use crate::sampling::warp::sample_cosine_hemisphere;
@@ -26,6 +27,26 @@ pub enum Method {
     Skin,
     /// The mean free path itself, as MaterialX and OpenPBR define it; in by refraction.
     FreePath,
+    /// Blender's *Christensen-Burley*: 4π times the length of a profile of distances; no walk at all.
+    Profile,
+}
+
+/// What light that goes beneath a surface finds there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inside {
+    /// Something to walk in.
+    Medium(Medium),
+    /// Distances at which it comes out.
+    Profile(Profile),
+}
+
+/// What lies beneath a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beneath {
+    /// What it is.
+    pub inside: Inside,
+    /// See [`Subsurface::shallow`].
+    pub shallow: bool,
 }
 
 /// Light that scatters beneath a surface, with colors of type `C` and numbers of type `S` as in
@@ -44,6 +65,8 @@ pub struct Subsurface<C = Rgb, S = f32> {
     pub ior: S,
     /// What the radius means.
     pub method: Method,
+    /// True where it is Lambert's surface to light that has been scattered diffusely on its way to the eye.
+    pub shallow: bool,
 }
 
 impl<C, S> Subsurface<C, S> {
@@ -56,6 +79,7 @@ impl<C, S> Subsurface<C, S> {
             anisotropy: scalar(&self.anisotropy),
             ior: scalar(&self.ior),
             method: self.method,
+            shallow: self.shallow,
         }
     }
 }
@@ -71,16 +95,19 @@ pub(super) struct WayIn {
     /// Microfacet width.
     alpha: f32,
     method: Method,
+    shallow: bool,
 }
 
 impl WayIn {
-    /// What is inside.
-    pub fn medium(&self) -> Medium {
-        let by = match self.method {
-            Method::Walk | Method::Skin => Inversion::Cycles,
-            Method::FreePath => Inversion::SimilarHalfSpaces,
+    /// What it leads to.
+    pub fn beneath(&self) -> Beneath {
+        let medium = |by| Inside::Medium(Medium::new(self.color, self.radius, self.anisotropy, by));
+        let inside = match self.method {
+            Method::Walk | Method::Skin => medium(Inversion::Cycles),
+            Method::FreePath => medium(Inversion::SimilarHalfSpaces),
+            Method::Profile => Inside::Profile(Profile { length: self.radius }),
         };
-        Medium::new(self.color, self.radius, self.anisotropy, by)
+        Beneath { inside, shallow: self.shallow }
     }
 }
 
@@ -131,7 +158,7 @@ fn way_in(subsurface: &Subsurface, color: Rgb, alpha: f32) -> WayIn {
     let ior = if subsurface.ior > 1.01 { subsurface.ior.min(3.8) } else { 1.01 };
     let radius = subsurface.radius.map(|r| if r >= SMALLEST_RADIUS { r } else { 0.0 });
     let radius = match method {
-        Method::Walk => radius * (0.25 * std::f32::consts::FRAC_1_PI),
+        Method::Walk | Method::Profile => radius * (0.25 * std::f32::consts::FRAC_1_PI),
         Method::Skin => radius.zip(color, |r, c| r * (3.0 * (1.0 - dipole_albedo(c, ior))).sqrt()),
         Method::FreePath => radius,
     };
@@ -139,7 +166,7 @@ fn way_in(subsurface: &Subsurface, color: Rgb, alpha: f32) -> WayIn {
     let anisotropy = subsurface.anisotropy;
     let anisotropy = if anisotropy.is_nan() { 0.0 } else { anisotropy.clamp(range[0], range[1]) };
     let alpha = if method == Method::Skin { 1.0 } else { unit(alpha) };
-    WayIn { color, radius, anisotropy, ior, alpha, method }
+    WayIn { color, radius, anisotropy, ior, alpha, method, shallow: subsurface.shallow }
 }
 
 /// The reduced albedo of a medium of index `ior` whose half space reflects `color` by the dipole: Jensen, Marschner,
@@ -197,9 +224,10 @@ mod tests {
             anisotropy: 0.0,
             ior: 1.4,
             method: Method::Walk,
+            shallow: false,
         };
         let wo = Vec3::new(0.8, 0.0, 0.6);
-        for method in [Method::Walk, Method::Skin, Method::FreePath] {
+        for method in [Method::Walk, Method::Skin, Method::FreePath, Method::Profile] {
             for (i, alpha) in [(0, 0.0), (1, 0.25), (2, 1.0)] {
                 let lobe = way_in(&Subsurface { method, ..white }, Rgb::WHITE, alpha);
                 for k in 0..64 {
@@ -224,14 +252,15 @@ mod tests {
             anisotropy: 0.0,
             ior: 1.4,
             method: Method::Walk,
+            shallow: false,
         };
         builder.add_beneath(Rgb::WHITE, &subsurface, 0.25);
         let bsdf = builder.finish();
         let diffuse = bsdf.eval(Vec3::Z).f_cos.diffuse * std::f32::consts::PI;
         assert_eq!((diffuse.r, (diffuse.g - 0.6).abs() < 1e-6, (diffuse.b - 0.7).abs() < 1e-6), (0.0, true, true));
         let entering = bsdf.sample(0.999, [0.5; 2]).unwrap();
-        let medium = bsdf.medium(entering.beneath.unwrap());
-        assert!(entering.wi.z < 0.0 && medium.is_some());
+        let beneath = bsdf.beneath(entering.beneath.unwrap());
+        assert!(entering.wi.z < 0.0 && beneath.is_some());
         assert_eq!(entering.weight.diffuse.g, 0.0);
         assert_eq!(bsdf.color().diffuse.r, 0.5);
     }

@@ -12,6 +12,8 @@ pub enum SubsurfaceMethod {
     RandomWalkSkin,
     /// The mean free path itself (MaterialX, OpenPBR).
     FreePath,
+    /// Blender's *Christensen-Burley*: 4π times the length of a profile.
+    Burley,
 }
 
 /// Light that is scattered in the inside of an object and leaves it elsewhere.
@@ -29,6 +31,9 @@ pub struct SubsurfaceDesc {
     pub ior: ScalarInput,
     /// What the radius means.
     pub method: SubsurfaceMethod,
+    /// True where it counts as a diffuse surface of its color once light has been scattered diffusely on its way to the
+    /// eye.
+    pub shallow: bool,
 }
 
 impl SubsurfaceDesc {

@@ -100,7 +100,7 @@ pub fn about(axis: Vec3, cos: f32, u: f32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bsdf::{Bsdf, Method, Subsurface, Surface};
+    use crate::bsdf::{Bsdf, Inside, Method, Subsurface, Surface};
     use crate::math::Rgb;
 
     fn medium() -> Medium {
@@ -111,10 +111,13 @@ mod tests {
             anisotropy: 0.0,
             ior: 1.4,
             method: Method::FreePath,
+            shallow: false,
         };
         let surface = Surface { subsurface: Some(subsurface), ior: 1.0, ..Surface::default() };
         let bsdf = Bsdf::new(&surface, Vec3::Z, true);
-        bsdf.medium(bsdf.sample(0.5, [0.5; 2]).unwrap().beneath.unwrap()).unwrap()
+        let beneath = bsdf.beneath(bsdf.sample(0.5, [0.5; 2]).unwrap().beneath.unwrap()).unwrap();
+        let Inside::Medium(medium) = beneath.inside else { panic!("no medium") };
+        medium
     }
 
     /// Guided directions, weighed by the phase function over their density, have the mean of the phase function's.

@@ -3,6 +3,7 @@
 mod ao;
 mod catcher;
 mod direct;
+mod disk;
 mod first_hit;
 mod guide;
 mod media;

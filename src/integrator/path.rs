@@ -11,7 +11,7 @@ use super::shadow::{emitters_along, mesh_weight};
 use super::shadow_pass;
 use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
 use super::{ao, catcher, subsurface};
-use crate::bsdf::{BsdfSample, ByLobe, Closure, Lobe};
+use crate::bsdf::{Beneath, BsdfSample, ByLobe, Closure, Inside, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
@@ -41,6 +41,8 @@ struct Path {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
+    /// True where one of them was diffuse.
+    diffuse: bool,
     /// Solids that the path is inside of.
     media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
@@ -66,6 +68,7 @@ impl Path {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
+            diffuse: false,
             media: Media::default(),
             vertex: 0,
             last: None,
@@ -412,6 +415,7 @@ fn scatter(
     let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
+    path.diffuse |= scattered.lobe == Lobe::Diffuse;
     if first {
         path.shares = last.shares;
     }
@@ -461,10 +465,15 @@ fn go_beneath(
     sample: &mut PixelSample,
 ) -> bool {
     let Shading { it, frame, bsdf, vertex } = *shading;
-    let Some(medium) = bsdf.medium(beneath) else { return false };
-    let wi = frame.to_world(scattered.wi);
-    let entry = subsurface::Entry { it, n: frame.n, wi, medium, vertex, cone: path.cone };
-    let Some((it, beta)) = entry.walk(scene, sampler, path.beta * scattered.weight.sum()) else { return false };
+    let Some(Beneath { inside, shallow }) = bsdf.beneath(beneath) else { return false };
+    let entry = subsurface::Entry { it, n: frame.n, wi: frame.to_world(scattered.wi), vertex, cone: path.cone };
+    let beta = path.beta * scattered.weight.sum();
+    let came_out = match inside {
+        _ if shallow && path.diffuse => Some((*it, beta)),
+        Inside::Medium(medium) => entry.walk(scene, sampler, &medium, beta),
+        Inside::Profile(profile) => entry.probe(scene, sampler, &profile, beta),
+    };
+    let Some((it, beta)) = came_out else { return false };
     path.beta = beta;
     path.vertex += 1;
     let frame = scene.shading_frame(&it);

@@ -31,8 +31,6 @@ pub struct Entry<'a> {
     pub n: Vec3,
     /// Unit direction into the object.
     pub wi: Vec3,
-    /// What is inside.
-    pub medium: Medium,
     /// Index of random decisions.
     pub vertex: u32,
     /// Of the ray that has found the point.
@@ -65,8 +63,7 @@ impl Stage {
 impl Entry<'_> {
     /// Where light of throughput `beta` comes out, as seen from outside, and what is left of it; `None` where it does
     /// not come out.
-    pub fn walk(&self, scene: &Scene, sampler: &Sampler, beta: Rgb) -> Option<(Interaction, Rgb)> {
-        let medium = &self.medium;
+    pub fn walk(&self, scene: &Scene, sampler: &Sampler, medium: &Medium, beta: Rgb) -> Option<(Interaction, Rgb)> {
         let first = Stage::first(medium);
         let later = first.later();
         let mut guide = Guide::new(medium, self.it.p, self.n);

@@ -645,6 +645,13 @@ def skin():
     _side_light()
 
 
+def burley():
+    node = _ball("Wax", Base_Color=(0.8, 0.6, 0.3, 1.0), Roughness=0.4, Subsurface_Weight=1.0,
+                 Subsurface_Radius=(1.0, 0.5, 0.2), Subsurface_Scale=2.0)
+    node.subsurface_method = "BURLEY"
+    _side_light()
+
+
 def candle():
     """A thin slab before a lamp."""
     room()

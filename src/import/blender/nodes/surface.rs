@@ -160,9 +160,6 @@ pub(super) fn subsurface<'a>(
     method: &str,
     [color, radius, scale, anisotropy, ior]: [&str; 5],
 ) -> SubsurfaceDesc {
-    if method == "BURLEY" {
-        flow.warn(format!("Christensen and Burley's subsurface scattering of \"{}\" is a random walk", at.node.name));
-    }
     let color = input(flow, at, color);
     let (radius, scale) = (flow.input(at, radius), flow.input(at, scale));
     let radius = flow.graph.multiply(radius, scale);
@@ -174,8 +171,10 @@ pub(super) fn subsurface<'a>(
         ior: optional(flow, at, ior, 1.4),
         method: match method {
             "RANDOM_WALK_SKIN" => SubsurfaceMethod::RandomWalkSkin,
+            "BURLEY" => SubsurfaceMethod::Burley,
             _ => SubsurfaceMethod::RandomWalk,
         },
+        shallow: flow.version < [5, 0, 0] || method == "BURLEY",
     }
 }
 

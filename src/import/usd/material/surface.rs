@@ -202,6 +202,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         anisotropy: f.scalar(beneath.anisotropy),
         ior,
         method: beneath.method,
+        shallow: false,
     });
     material.sheen = surface
         .sheen

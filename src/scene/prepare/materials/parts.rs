@@ -154,7 +154,9 @@ impl Builder<'_> {
                 SubsurfaceMethod::RandomWalk => Method::Walk,
                 SubsurfaceMethod::RandomWalkSkin => Method::Skin,
                 SubsurfaceMethod::FreePath => Method::FreePath,
+                SubsurfaceMethod::Burley => Method::Profile,
             },
+            shallow: desc.shallow,
         }
     }
 
