@@ -5,7 +5,9 @@
 mod scene;
 
 use penumbra::desc::{ColorInput, LightKind, MaterialDesc, ScalarInput, SubsurfaceDesc, SubsurfaceMethod as Method};
+use penumbra::error::Warnings;
 use penumbra::film::Picture;
+use penumbra::import::blender::BlenderScene;
 use penumbra::math::{DAffine3, DVec3};
 use penumbra::settings::{EffectsMode, Settings};
 use scene::{Builder, close, mean, picture, settings};
@@ -247,4 +249,50 @@ fn all_effects_give_the_same_bits() {
     let all = Settings { effects: EffectsMode::All, ..auto.clone() };
     let [auto, all] = [auto, all].map(|settings| picture(&builder.desc, 16, &settings));
     assert_eq!(auto.layer("Combined").unwrap().data, all.layer("Combined").unwrap().data);
+}
+
+/// What Blender's nodes mean: radius times scale, the base color, and since 5.0 a walk whoever looks.
+#[test]
+fn nodes_of_blender_say_what_is_beneath() {
+    use serde_json::json;
+    let socket = |id: &str, kind: &str, value: serde_json::Value| json!({"id": id, "name": id, "type": kind, "enabled": true, "value": value});
+    let numbers = [
+        ("Subsurface Weight", 0.5),
+        ("Subsurface Scale", 0.2),
+        ("Subsurface Anisotropy", 0.3),
+        ("Subsurface IOR", 1.3),
+    ];
+    for (version, name, method, shallow) in [
+        ([5, 0, 1], "RANDOM_WALK", Method::RandomWalk, false),
+        ([4, 5, 0], "RANDOM_WALK_SKIN", Method::RandomWalkSkin, true),
+        ([5, 0, 1], "BURLEY", Method::Burley, true),
+    ] {
+        let mut inputs: Vec<_> = numbers.map(|(id, value)| socket(id, "VALUE", json!(value))).into();
+        inputs.push(socket("Base Color", "RGBA", json!([0.8, 0.5, 0.25, 1.0])));
+        inputs.push(socket("Subsurface Radius", "VECTOR", json!([1.0, 0.5, 0.25])));
+        let nodes = json!([
+            {
+                "name": "Output", "type": "ShaderNodeOutputMaterial", "properties": {"is_active_output": true},
+                "inputs": [{"id": "Surface", "name": "Surface", "type": "SHADER", "enabled": true, "link": [1, 0]}],
+            },
+            {
+                "name": "P", "type": "ShaderNodeBsdfPrincipled", "properties": {"subsurface_method": name},
+                "inputs": inputs, "outputs": [{"id": "BSDF", "name": "BSDF", "type": "SHADER", "enabled": true}],
+            },
+        ]);
+        let mut scene = BlenderScene::default();
+        scene.set_document(&json!({"version": version}).to_string()).unwrap();
+        scene.set_material(1, &json!({"name": "M", "nodes": {"nodes": nodes}}).to_string()).unwrap();
+        scene.set_materials(&[1]).unwrap();
+        let mut warnings = Warnings::new();
+        let desc = scene.scene(&mut warnings).unwrap();
+        let found = desc.materials[0].subsurface.unwrap();
+        assert_eq!((found.method, found.shallow), (method, shallow), "{name}");
+        assert_eq!(found.color, ColorInput::constant([0.8, 0.5, 0.25]));
+        let radius = found.radius.factor.map(|r| (r * 1e4).round() / 1e4);
+        assert_eq!(radius, [0.2, 0.1, 0.05]);
+        let number = |input: ScalarInput| (input.factor * 1e4).round() / 1e4;
+        assert_eq!([found.weight, found.anisotropy, found.ior].map(number), [0.5, 0.3, 1.3]);
+        assert!(warnings.iter().all(|warning| !warning.what.contains("ubsurface")), "{warnings:?}");
+    }
 }

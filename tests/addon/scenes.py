@@ -700,7 +700,7 @@ def bumpy():
     tree = matter.node_tree
     shader = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
     bump, waves = tree.nodes.new("ShaderNodeBump"), tree.nodes.new("ShaderNodeTexWave")
-    bump.inputs["Distance"].default_value = 0.3
+    bump.inputs["Distance"].default_value = 0.04
     waves.inputs["Scale"].default_value = 1.5
     tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], waves.inputs["Vector"])
     tree.links.new(waves.outputs["Color"], bump.inputs["Height"])
