@@ -20,9 +20,9 @@ impl Profile {
     /// A distance from where light went in, and half of the height in which to look for a surface there; `u` chooses
     /// one of the channels.
     pub fn sample(&self, u: f32) -> [f32; 2] {
-        let channels = self.length.to_array().into_iter().filter(|&d| d > 0.0);
+        let mut channels = self.length.to_array().into_iter().filter(|&d| d > 0.0);
         let scaled = u * channels.clone().count() as f32;
-        let d = channels.clone().nth(scaled as usize).or(channels.last()).unwrap_or(0.0);
+        let d = channels.clone().nth(scaled as usize).or(channels.next_back()).unwrap_or(0.0);
         let r = inverse(scaled.fract() * WITHIN) * d;
         [r, safe_sqrt(sqr(LARGEST * d) - sqr(r))]
     }

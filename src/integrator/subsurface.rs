@@ -69,6 +69,8 @@ impl Entry<'_> {
         let mut guide = Guide::new(medium, self.it.p, self.n);
         let mut throughput = beta * medium.scale;
         let mut ray = self.it.spawn(self.wi);
+        // A scattering so near the surface that rounding may have it beyond would be lost: it comes out.
+        let slack = 0.5 * self.it.p_err.max_element();
         for step in 0..MAX_STEPS {
             let draw = |decision| sampler.get_1d(Dimension::at_bounce(self.vertex, decision).nth(step));
             let stage = if step <= SIMILAR_AFTER { &first } else { &later };
@@ -87,15 +89,13 @@ impl Entry<'_> {
                 turn
             });
             let free = -(1.0 - draw(Decision::WalkDistance)).ln() / sigma;
-            ray.t_max = free;
-            if step == 0 {
-                ray.t_max = free.max(FAR / least(stage.sigma_t));
-            }
+            let reach = free + slack;
+            ray.t_max = if step == 0 { reach.max(FAR / least(stage.sigma_t)) } else { reach };
             let hit = scene.way_out(self.it.instance, &ray);
             if step == 0 {
                 guide.opposite = hit.map(|hit| -self.n.dot(ray.d) * hit.t);
             }
-            let hit = hit.filter(|hit| hit.t < free);
+            let hit = hit.filter(|hit| hit.t < reach);
             let t = hit.map_or(free, |hit| hit.t);
             let transmittance = stage.sigma_t.map(|sigma| (-sigma * t).exp());
             let of_step = |stretch: f32| {
@@ -116,7 +116,7 @@ impl Entry<'_> {
             if let Some(hit) = hit {
                 return Some((scene.coming_out(&ray, &hit, self.cone), throughput));
             }
-            if !(throughput.max_component() >= LEAST) {
+            if throughput.max_component() < LEAST {
                 return None;
             }
             ray.o = ray.at(t);
