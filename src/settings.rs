@@ -296,6 +296,10 @@ settings! {
         "Apply baked occlusion maps to bounced diffuse light, as glTF defines them";
     motion_blur: bool = "on", Kind::Bool, "on|off",
         "Blur what moves while the camera's shutter is open";
+    shadow_terminator_geometry_offset: f64 = "0.1", Kind::Float { min: 0.0, max: 1.0 }, "COSINE",
+        "Rays to lights that meet smooth triangles at up to this cosine begin on a rounded surface, for objects that say nothing of it; 0 for none";
+    shadow_terminator_shading_offset: f64 = "0", Kind::Float { min: 0.0, max: 1.0 }, "SHARE",
+        "How far the edge of an object's own shadow is drawn towards the light, for objects that say nothing of it";
     seed: u64 = "0", Kind::Int { min: 0, max: u64::MAX }, "N",
         "Seed of every random decision; the same seed gives the same bits";
     threads: u32 = "0", Kind::Int { min: 0, max: 4096 }, "N",

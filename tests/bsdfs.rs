@@ -28,6 +28,7 @@ const WHITE: Surface = Surface {
     thin: false,
     translucent: 0.0,
     translucent_color: Rgb::WHITE,
+    subsurface: None,
     coat: None,
     sheen: None,
     film: None,

@@ -6,7 +6,9 @@ import penumbra
 from . import passes
 
 # What Blender has properties of its own for.
-_BLENDERS = {"passes", "threads", "half", "filter"}
+_BLENDERS = {
+    "passes", "threads", "half", "filter", "shadow_terminator_geometry_offset", "shadow_terminator_shading_offset",
+}
 _UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
 
 

@@ -9,6 +9,7 @@ use super::oren_nayar::OrenNayar;
 use super::principled;
 use super::reflection::{Fresnel, Reflection};
 use super::sheen::SheenLobe;
+use super::subsurface::Subsurface;
 use super::surface::{Stretched, Surface, ThinFilm};
 use super::thin_film::{Base, Film, THINNEST};
 use super::toon::Toon;
@@ -40,6 +41,13 @@ pub enum Closure<C = Rgb, S = f32> {
         roughness: S,
         /// True where light that scatters more than once is not lost.
         multiscatter: bool,
+    },
+    /// Scattering beneath the surface, its weight counted.
+    Beneath {
+        /// What is there.
+        subsurface: Subsurface<C, S>,
+        /// Width of the microfacets through which light goes in, 0 to 1.
+        alpha: S,
     },
     /// Diffuse passage.
     Translucent {
@@ -121,6 +129,9 @@ impl<C, S> Closure<C, S> {
             Self::Diffuse { color, roughness, multiscatter } => {
                 Closure::Diffuse { color: c(color), roughness: s(roughness), multiscatter: *multiscatter }
             }
+            Self::Beneath { subsurface, alpha } => {
+                Closure::Beneath { subsurface: subsurface.map(c, &mut s), alpha: s(alpha) }
+            }
             Self::Translucent { color } => Closure::Translucent { color: c(color) },
             Self::Glossy { color, facets } => Closure::Glossy { color: c(color), facets: facets.map(s) },
             Self::Metal { base, edge, facets, film } => Closure::Metal {
@@ -178,6 +189,9 @@ impl Builder {
             Closure::Layered(surface) => principled::add(self, weight, surface),
             Closure::Diffuse { color, roughness, multiscatter } => {
                 self.add_diffuse(weight, *color, *roughness, *multiscatter);
+            }
+            Closure::Beneath { subsurface, alpha } => {
+                self.add_beneath(weight * unit(subsurface.weight), subsurface, *alpha)
             }
             Closure::Translucent { color } => self.push(weight * *color, Class::Diffuse, None, Translucent),
             Closure::Glossy { color, facets } => {

@@ -5,6 +5,7 @@ use super::lambert::Lambert;
 use super::oren_nayar::OrenNayar;
 use super::reflection::Reflection;
 use super::sheen::SheenLobe;
+use super::subsurface::WayIn;
 use super::toon::Toon;
 use super::translucent::Translucent;
 use crate::math::{Rgb, Vec3};
@@ -138,4 +139,5 @@ lobes! {
     Sheen(SheenLobe),
     Reflection(Reflection),
     Glass(Glass),
+    WayIn(WayIn),
 }

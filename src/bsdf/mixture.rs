@@ -3,8 +3,9 @@
 use smallvec::SmallVec;
 
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
+use super::softening::Softening;
 use super::surface::ThinFilm;
-use super::{BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
+use super::{Beneath, BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 
 /// How the sides of a lobe are counted in the passes.
@@ -59,6 +60,10 @@ pub struct Bsdf {
     side: f32,
     /// Geometric normal on the side of `wo`.
     ng: Vec3,
+    /// The smooth one that it stands for, before maps.
+    ns: Vec3,
+    /// `None` where the edge of shadows is as the lobes have it.
+    softening: Option<Softening>,
 }
 
 /// A [`Bsdf`] in the making.
@@ -78,7 +83,19 @@ impl Builder {
         let side = if wo.z < 0.0 { -1.0 } else { 1.0 };
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
         let ng = Vec3::new(ng.x, ng.y, ng.z * side);
-        Self { bsdf: Bsdf { terms: SmallVec::new(), frames: SmallVec::new(), wo, side, ng }, entering, base: None }
+        let bsdf = Bsdf { terms: SmallVec::new(), frames: SmallVec::new(), wo, side, ng, ns: ng, softening: None };
+        Self { bsdf, entering, base: None }
+    }
+
+    /// The geometry stands for a smooth surface of normal `ns`, on the side of `wo`: what is lit and what is not goes by
+    /// that, but no direction is drawn through the geometry.
+    pub fn set_smooth(&mut self, ns: Vec3) {
+        self.bsdf.ns = Vec3::new(ns.x, ns.y, ns.z * self.bsdf.side);
+    }
+
+    /// How the edges of shadows are softened.
+    pub fn soften(&mut self, softening: Softening) {
+        self.bsdf.softening = Some(softening);
     }
 
     pub(super) fn entering(&self) -> bool {
@@ -188,31 +205,45 @@ impl Bsdf {
     }
 
     fn value(&self, wi: Vec3) -> BsdfEval {
-        let above = wi.dot(self.ng) > 0.0;
+        let above = wi.dot(self.ns) > 0.0;
         let mut sum = BsdfEval::default();
         for term in &self.terms {
             let (wo, wi) = match term.frame {
                 None => (self.wo, wi),
                 Some(frame) => self.within(frame, wi),
             };
-            // Where shading and geometry disagree on the side, light would leak through the surface, or a
-            // reflection go into it.
+            // Where a map's normal and the smooth one disagree on the side, light would leak through the surface, or
+            // a reflection go into it.
             if (wi.z > 0.0) != above || wi.z == 0.0 {
                 continue;
             }
-            let Value { f_cos, pdf } = term.lobe.eval(wo, wi);
+            let Value { mut f_cos, pdf } = term.lobe.eval(wo, wi);
+            if let Some(softening) = &self.softening {
+                f_cos *= self.softened(softening, term, wi);
+            }
             let class = if above { term.class.above() } else { term.class.below() };
             *sum.f_cos.get_mut(class) += term.color * f_cos;
             sum.pdf += term.pick * pdf;
         }
+        if above != (wi.dot(self.ng) > 0.0) {
+            // Lit around the triangle that is there: `sample` never goes that way.
+            sum.pdf = 0.0;
+        }
         sum
+    }
+
+    /// What is left of a lobe's value towards `wi`, in its own frame.
+    #[cold]
+    fn softened(&self, softening: &Softening, term: &Term, wi: Vec3) -> f32 {
+        let ns = term.frame.map_or(self.ns, |frame| self.frames[usize::from(frame)].0.to_local(self.ns));
+        softening.at_edge(wi.z) * if term.class == Class::Diffuse { softening.of_bumps(ns, wi) } else { 1.0 }
     }
 
     /// Draws a direction: `uc` chooses the lobe, `u` the direction. `None` where nothing scatters.
     pub fn sample(&self, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let mut rest = uc;
-        let mut chosen = self.terms.iter().filter(|term| term.pick > 0.0);
-        let mut term = chosen.next()?;
+        let mut chosen = self.terms.iter().enumerate().filter(|(_, term)| term.pick > 0.0);
+        let (mut index, mut term) = chosen.next()?;
         while rest >= term.pick {
             // Rounding may leave a little beyond the last.
             let Some(next) = chosen.next() else {
@@ -220,7 +251,7 @@ impl Bsdf {
                 break;
             };
             rest -= term.pick;
-            term = next;
+            (index, term) = next;
         }
         let uc = (rest / term.pick).min(ONE_MINUS_EPSILON);
         let wo = term.frame.map_or(self.wo, |frame| self.frames[usize::from(frame)].1);
@@ -234,11 +265,28 @@ impl Bsdf {
         if let Some((color, p)) = delta {
             let pdf = term.pick * p;
             let weight = ByLobe::only(lobe, term.color * color * (1.0 / pdf));
-            return (pdf > 0.0).then(|| BsdfSample { wi: self.turned(wi), weight, pdf, lobe, delta: true, eta });
+            let beneath = matches!(term.lobe, AnyLobe::WayIn(_)).then_some(index as u8);
+            return (pdf > 0.0).then(|| BsdfSample {
+                wi: self.turned(wi),
+                weight,
+                pdf,
+                lobe,
+                delta: true,
+                eta,
+                beneath,
+            });
         }
         let BsdfEval { f_cos, pdf } = self.value(wi);
         let wi = self.turned(wi);
-        (pdf > 0.0).then(|| BsdfSample { wi, weight: f_cos * (1.0 / pdf), pdf, lobe, delta: false, eta })
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: f_cos * (1.0 / pdf), pdf, lobe, delta: false, eta, beneath: None })
+    }
+
+    /// What a sampled direction that leads beneath the surface leads into; see [`BsdfSample::beneath`].
+    pub fn beneath(&self, beneath: u8) -> Option<Beneath> {
+        match self.terms.get(usize::from(beneath))?.lobe {
+            AnyLobe::WayIn(way_in) => Some(way_in.beneath()),
+            _ => None,
+        }
     }
 
     fn within(&self, frame: u8, wi: Vec3) -> (Vec3, Vec3) {

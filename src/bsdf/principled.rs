@@ -10,6 +10,7 @@ use super::lobe::Scatter;
 use super::mixture::{Builder, Class};
 use super::reflection::{Fresnel, Reflection};
 use super::sheen::SheenLobe;
+use super::subsurface::{Method, Subsurface};
 use super::surface::{Coat, Sheen, Surface};
 use super::thin_film::Base;
 use super::translucent::Translucent;
@@ -53,7 +54,14 @@ pub(super) fn add(builder: &mut Builder, weight: Rgb, surface: &Surface) {
         let color = surface.translucent_color.map(unit);
         builder.push(through * color * translucent, Class::Diffuse, None, Translucent);
     }
-    builder.add_diffuse(through * (1.0 - translucent), base, surface.diffuse_roughness, true);
+    through *= 1.0 - translucent;
+    if let Some(subsurface) = &surface.subsurface {
+        let share = unit(subsurface.weight);
+        let ior = if subsurface.method == Method::Walk { curve(surface, ior) } else { subsurface.ior };
+        builder.add_beneath(through * share, &Subsurface { ior, ..*subsurface }, sqr(unit(surface.roughness)));
+        through *= 1.0 - share;
+    }
+    builder.add_diffuse(through, base, surface.diffuse_roughness, true);
 }
 
 /// What is left of light below a layer of `albedo`.
@@ -131,15 +139,20 @@ fn add_glass(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb, i
     builder.push(weight, Class::Interface, None, lobe);
 }
 
+/// The index that the specular level makes of `ior`.
+fn curve(surface: &Surface, ior: f32) -> f32 {
+    let level = surface.specular_level.max(0.0);
+    if level == 1.0 {
+        return ior;
+    }
+    let root = (f0_from_eta(ior) * level).min(0.99).sqrt();
+    (1.0 + root) / (1.0 - root)
+}
+
 /// Reflection over the diffuse part; what it leaves.
 fn add_specular(builder: &mut Builder, weight: Rgb, surface: &Surface, ior: f32) -> f32 {
     let level = surface.specular_level.max(0.0);
-    let curve = if level == 1.0 {
-        ior
-    } else {
-        let root = (f0_from_eta(ior) * level).min(0.99).sqrt();
-        (1.0 + root) / (1.0 - root)
-    };
+    let curve = curve(surface, ior);
     // Approximation: an opaque surface of an index below 1 has no critical angle, the step in
     // which the tables can't hold.
     let curve = curve.max(1.0 / curve);

@@ -126,4 +126,7 @@ pub struct BsdfSample {
     pub delta: bool,
     /// Index of refraction on `wi`'s side over that on `wo`'s side; 1 unless a boundary was crossed.
     pub eta: f32,
+    /// Index for [`Bsdf::beneath`](super::Bsdf::beneath) where `wi` leads beneath the surface, to a walk that comes out
+    /// elsewhere.
+    pub beneath: Option<u8>,
 }

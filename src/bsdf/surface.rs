@@ -3,6 +3,7 @@
 //! Colors are of type `C` and numbers of type `S`: values at a point, or the inputs of a material from which they
 //! are evaluated.
 
+use super::Subsurface;
 use crate::math::{Frame, Rgb};
 
 /// A surface's parameters. Values outside their ranges are clamped when it is added to a [`super::Bsdf`].
@@ -43,6 +44,8 @@ pub struct Surface<C = Rgb, S = f32> {
     pub translucent: S,
     /// Its color, in place of `base_color`.
     pub translucent_color: C,
+    /// Light that scatters beneath, in place of diffuse light.
+    pub subsurface: Option<Subsurface<C, S>>,
     /// A clear layer on top.
     pub coat: Option<Coat<C, S>>,
     /// Fibers on top of all.
@@ -114,6 +117,7 @@ impl Default for Surface {
             thin: false,
             translucent: 0.0,
             translucent_color: Rgb::WHITE,
+            subsurface: None,
             coat: None,
             sheen: None,
             film: None,
@@ -140,6 +144,7 @@ impl<C, S> Surface<C, S> {
             thin: self.thin,
             translucent: scalar(&self.translucent),
             translucent_color: color(&self.translucent_color),
+            subsurface: self.subsurface.as_ref().map(|beneath| beneath.map(&mut color, &mut scalar)),
             coat: self.coat.as_ref().map(|coat| Coat {
                 weight: scalar(&coat.weight),
                 roughness: scalar(&coat.roughness),

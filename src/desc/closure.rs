@@ -1,7 +1,9 @@
 //! What scatters where shader nodes are mixed: lobes by the name of their nodes, each with its weight.
 
 use super::material::{Varying, of_color, of_normal, of_scalar};
-use super::{AnisotropyDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput, SheenDesc};
+use super::{
+    AnisotropyDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput, SheenDesc, SubsurfaceDesc,
+};
 
 /// One term of a mixture.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +40,13 @@ pub enum ClosureDesc {
         roughness: ScalarInput,
         /// True where light that scatters more than once at a rough surface is not lost.
         multiscatter: bool,
+    },
+    /// Scattering beneath the surface.
+    Beneath {
+        /// What is there.
+        subsurface: SubsurfaceDesc,
+        /// Width of the microfacets through which light goes in, 0 to 1.
+        alpha: ScalarInput,
     },
     /// Diffuse passage.
     Translucent {
@@ -144,6 +153,10 @@ impl ClosureDesc {
         match self {
             Self::Layered(layers) => all.extend(layers.layers().into_iter().flatten()),
             Self::Diffuse { color, roughness, .. } => all.extend([of_color(color), of_scalar(roughness)]),
+            Self::Beneath { subsurface, alpha } => {
+                all.extend(subsurface.inputs());
+                all.push(of_scalar(alpha));
+            }
             Self::Translucent { color } => all.push(of_color(color)),
             Self::Glossy { color, facets } => {
                 all.push(of_color(color));

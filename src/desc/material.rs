@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::graph::{Graph, ValueId};
-use super::{AovOutput, PartDesc, TextureRef};
+use super::{AovOutput, PartDesc, SubsurfaceDesc, TextureRef};
 use crate::error::Place;
 
 /// A colour: `factor × texture.rgb × graph.rgb`, linear.
@@ -258,6 +258,8 @@ pub struct MaterialDesc {
     pub volume: Option<VolumeDesc>,
     /// 20 / Abbe number; 0 for none (KHR_materials_dispersion).
     pub dispersion: f64,
+    /// Light that scatters beneath the surface, in place of diffuse light.
+    pub subsurface: Option<SubsurfaceDesc>,
     /// Diffuse light to the other side.
     pub translucent: Option<TranslucentDesc>,
     /// Clear coat.
@@ -311,6 +313,7 @@ impl Default for MaterialDesc {
             transmission: ScalarInput::constant(0.0),
             volume: None,
             dispersion: 0.0,
+            subsurface: None,
             translucent: None,
             coat: None,
             sheen: None,
@@ -350,8 +353,10 @@ impl MaterialDesc {
     }
 
     /// Inputs of what scatters.
-    pub(super) fn layers(&self) -> [Option<Varying>; 24] {
+    pub(super) fn layers(&self) -> [Option<Varying>; 29] {
         let Self { coat, sheen, iridescence, anisotropy, translucent, .. } = self;
+        let beneath = self.subsurface.map(|subsurface| subsurface.inputs());
+        let beneath = |i: usize| beneath.map(|inputs| inputs[i]);
         [
             Some(of_color(&self.base_color)),
             Some(of_scalar(&self.metallic)),
@@ -363,6 +368,11 @@ impl MaterialDesc {
             Some(of_scalar(&self.specular_level)),
             Some(of_scalar(&self.transmission)),
             self.volume.as_ref().map(|v| of_scalar(&v.thickness)),
+            beneath(0),
+            beneath(1),
+            beneath(2),
+            beneath(3),
+            beneath(4),
             translucent.as_ref().map(|t| of_scalar(&t.weight)),
             translucent.as_ref().map(|t| of_color(&t.color)),
             coat.as_ref().map(|c| of_scalar(&c.weight)),

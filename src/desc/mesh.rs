@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{LightLinks, ShapedDesc};
+use super::{LightLinks, ShapedDesc, TerminatorDesc};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -123,6 +123,8 @@ pub struct InstanceDesc {
     pub holdout: bool,
     /// The camera sees nothing of it but the shadows of others on it.
     pub catcher: bool,
+    /// How the edge of its own shadow is softened; `None` for what the settings say.
+    pub terminator: Option<TerminatorDesc>,
 }
 
 /// What graphs ask an object for.

@@ -18,6 +18,8 @@ mod mesh;
 mod render;
 mod rounds;
 mod shadow;
+mod subsurface;
+mod terminator;
 mod texture;
 
 pub use aov::{AovDesc, AovKind, AovOutput, BackgroundAovs};
@@ -37,6 +39,8 @@ pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, Object
 pub use render::{Conform, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
 pub use shadow::ShadowDesc;
+pub use subsurface::{SubsurfaceDesc, SubsurfaceMethod};
+pub use terminator::TerminatorDesc;
 pub use texture::{Filter, TextureDesc, TextureRef, TextureTransform, Wrap};
 
 use std::sync::Arc;

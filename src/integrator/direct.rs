@@ -102,7 +102,7 @@ impl Shading<'_> {
             return None;
         }
         let irradiance = li * (cos / pdf);
-        let ray = end.map_or_else(|| self.it.spawn(wi), |end| self.it.spawn_to(end));
+        let ray = scene.shadow_ray(self.it, wi, end);
         if scene.is_caught(&ray) {
             return None;
         }
@@ -122,12 +122,11 @@ fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> O
 }
 
 fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
-    let ray = end.map_or_else(|| it.spawn(wi), |end| it.spawn_to(end));
-    scene.arriving(&ray, rules)
+    scene.arriving(&scene.shadow_ray(it, wi, end), rules)
 }
 
-/// True where shading and geometric normal disagree on which side `wi` is.
+/// True where the normal of a map and the one that it bends disagree on which side `wi` is.
 fn leaks(it: &Interaction, wi: Vec3, local_z: f32) -> bool {
-    let geometric = it.ng.dot(wi) * if it.front { 1.0 } else { -1.0 };
-    geometric * local_z <= 0.0
+    let smooth = it.ns.dot(wi) * if it.front { 1.0 } else { -1.0 };
+    smooth * local_z <= 0.0
 }

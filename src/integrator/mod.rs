@@ -3,13 +3,16 @@
 mod ao;
 mod catcher;
 mod direct;
+mod disk;
 mod first_hit;
+mod guide;
 mod media;
 mod path;
 mod scattering;
 mod shadow;
 mod shadow_pass;
 mod split;
+mod subsurface;
 
 pub use first_hit::first_hit;
 

@@ -10,8 +10,8 @@ use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
 use super::shadow_pass;
 use super::split::{add_direct, add_indirect, add_unscattered, shares, to_film};
-use super::{ao, catcher};
-use crate::bsdf::{ByLobe, Lobe};
+use super::{ao, catcher, subsurface};
+use crate::bsdf::{Beneath, BsdfSample, ByLobe, Closure, Inside, Lobe};
 use crate::film::PixelSample;
 use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
@@ -41,6 +41,8 @@ struct Path {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
+    /// True where one of them was diffuse.
+    diffuse: bool,
     /// Solids that the path is inside of.
     media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
@@ -66,6 +68,7 @@ impl Path {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
+            diffuse: false,
             media: Media::default(),
             vertex: 0,
             last: None,
@@ -151,22 +154,14 @@ pub fn trace(
         path.beta *= path.occlusion;
 
         let light_samples = if path.scatterings == 0 { settings.light_samples } else { 1 };
-        if path.scatterings == 0 && scene.effects.group_shadows {
-            shadow_pass::add_of_groups(scene, sampler, &shading, path.beta, light_samples, &mut sample);
-        }
+        add_lights(scene, sampler, &path, &shading, light_samples, &mut sample);
         if !scene.effects.light {
             break;
-        }
-        if !bsdf.is_delta_only() {
-            for k in 0..light_samples {
-                let sampler = if light_samples > 1 { sampler.part(k, light_samples) } else { *sampler };
-                add_light(scene, &sampler, &path, &shading, light_samples as f32, &mut sample);
-            }
         }
         if path.scatterings == 0 && scene.effects.irradiance && bsdf.lacks_diffuse() {
             shadow_pass::add_irradiance(scene, sampler, &shading, &mut sample);
         }
-        if !scatter(scene, sampler, &mut path, &shading, light_samples as f32, &mut sample) {
+        if !scatter(scene, sampler, &mut path, &shading, light_samples, &mut sample) {
             break;
         }
         let only_emitters = path.scatterings > max_bounces;
@@ -340,6 +335,27 @@ fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, samp
     }
 }
 
+/// Direct light at a surface by `light_samples` samples, and what light groups have of their own.
+fn add_lights(
+    scene: &Scene,
+    sampler: &Sampler,
+    path: &Path,
+    shading: &Shading<'_>,
+    light_samples: u32,
+    sample: &mut PixelSample,
+) {
+    if path.scatterings == 0 && scene.effects.group_shadows {
+        shadow_pass::add_of_groups(scene, sampler, shading, path.beta, light_samples, sample);
+    }
+    if !scene.effects.light || shading.bsdf.is_delta_only() {
+        return;
+    }
+    for k in 0..light_samples {
+        let sampler = if light_samples > 1 { sampler.part(k, light_samples) } else { *sampler };
+        add_light(scene, &sampler, path, shading, light_samples as f32, sample);
+    }
+}
+
 /// Direct light by light sampling, and its part of the shadow passes.
 fn add_light(
     scene: &Scene,
@@ -367,13 +383,16 @@ fn scatter(
     sampler: &Sampler,
     path: &mut Path,
     shading: &Shading<'_>,
-    light_samples: f32,
+    light_samples: u32,
     sample: &mut PixelSample,
 ) -> bool {
     let it = shading.it;
     let uc = sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::BsdfLobe));
     let u = sampler.get_2d(Dimension::at_bounce(path.vertex, Decision::BsdfDirection));
     let Some(scattered) = shading.bsdf.sample(uc, u) else { return false };
+    if let Some(beneath) = scattered.beneath {
+        return go_beneath(scene, sampler, path, shading, (&scattered, beneath), light_samples, sample);
+    }
     let wi = shading.frame.to_world(scattered.wi);
     path.ray = it.spawn(wi);
     path.start = it.p;
@@ -388,7 +407,7 @@ fn scatter(
     let last = Scattering {
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
-        light_samples,
+        light_samples: light_samples as f32,
         shares: shares(scattered.weight),
     };
     path.last = Some(last);
@@ -396,6 +415,7 @@ fn scatter(
     let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
+    path.diffuse |= scattered.lobe == Lobe::Diffuse;
     if first {
         path.shares = last.shares;
     }
@@ -429,6 +449,40 @@ fn scatter(
         _ => 1.0,
     };
     !path.beta.is_black()
+}
+
+/// Walks beneath the surface to where light comes out, which it does by Lambert's law: what arrives there counts as if
+/// it arrived at `shading`. False where the path ends.
+// Out of line, so that other surfaces have no part in it.
+#[cold]
+fn go_beneath(
+    scene: &Scene,
+    sampler: &Sampler,
+    path: &mut Path,
+    shading: &Shading<'_>,
+    (scattered, beneath): (&BsdfSample, u8),
+    light_samples: u32,
+    sample: &mut PixelSample,
+) -> bool {
+    let Shading { it, frame, bsdf, vertex } = *shading;
+    let Some(Beneath { inside, shallow }) = bsdf.beneath(beneath) else { return false };
+    let entry = subsurface::Entry { it, n: frame.n, wi: frame.to_world(scattered.wi), vertex, cone: path.cone };
+    let beta = path.beta * scattered.weight.sum();
+    let came_out = match inside {
+        _ if shallow && path.diffuse => Some((*it, beta)),
+        Inside::Medium(medium) => entry.walk(scene, sampler, &medium, beta),
+        Inside::Profile(profile) => entry.probe(scene, sampler, &profile, beta),
+    };
+    let Some((it, beta)) = came_out else { return false };
+    path.beta = beta;
+    path.vertex += 1;
+    let frame = scene.shading_frame(&it);
+    let mut builder = scene.builder(&it, &frame);
+    builder.add(Rgb::WHITE, &Closure::Diffuse { color: Rgb::WHITE, roughness: 0.0, multiscatter: false });
+    let bsdf = builder.finish();
+    let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
+    add_lights(scene, sampler, path, &shading, light_samples, sample);
+    scatter(scene, sampler, path, &shading, light_samples, sample)
 }
 
 /// What graphs call a ray from a lobe of this class.

@@ -33,6 +33,16 @@ pub enum Decision {
     ShadowPoint,
     /// Which light is asked for those (1D).
     ShadowChoice,
+    /// For which channel a step beneath a surface is drawn (1D).
+    WalkChannel,
+    /// How far that step goes (1D).
+    WalkDistance,
+    /// In which direction (2D).
+    WalkDirection,
+    /// Whether it is guided (1D).
+    WalkGuide,
+    /// To which side (1D).
+    WalkSide,
 }
 
 /// Decisions of the camera come first, then each bounce has `STRIDE` of its own.
@@ -75,8 +85,8 @@ mod tests {
 
     #[test]
     fn names_are_distinct() {
-        let decisions = [Decision::BsdfLobe, Decision::LightPoint, Decision::ShadowChoice];
-        assert!((Decision::ShadowChoice as u32) < STRIDE);
+        let decisions = [Decision::BsdfLobe, Decision::LightPoint, Decision::WalkSide];
+        assert!((Decision::WalkSide as u32) < STRIDE);
         let mut seen = HashSet::from([Dimension::PIXEL, Dimension::LENS, Dimension::TIME, Dimension::FREE]);
         for bounce in (0..64).chain([(1 << 15) - 2]) {
             for decision in decisions {

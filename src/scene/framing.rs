@@ -102,6 +102,7 @@ mod tests {
             shaped: None,
             holdout: false,
             catcher: false,
+            terminator: None,
         };
         let scene = SceneDesc { meshes: vec![mesh.into()], instances: vec![instance], ..SceneDesc::default() };
         for aspect in [0.3, 1.0, 3.0] {

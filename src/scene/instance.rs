@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Terminator;
 use crate::light::{Profile, Rules};
 use crate::math::MovingTransform;
 use crate::shape::Placement;
@@ -80,6 +81,8 @@ pub struct Instance {
     pub holdout: bool,
     /// True where the camera sees nothing of it but the shadows of others on it.
     pub catcher: bool,
+    /// How the edge of its own shadow is softened.
+    pub terminator: Terminator,
 }
 
 impl Instance {

@@ -148,6 +148,8 @@ pub struct Material {
     pub holdout: bool,
     /// Normal map.
     pub normal: Option<NormalInput>,
+    /// True where its normals, or those of a part, are not those of the shape.
+    pub bumps: bool,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
     /// What it gives as the AOVs of the render's passes, in their order; empty where it gives nothing.
@@ -381,6 +383,14 @@ impl Material {
     /// True where some light may pass it unscattered.
     pub fn is_cutout(&self) -> bool {
         self.opacity != Opacity::Opaque || self.transparency.is_some()
+    }
+
+    /// True where light may go beneath it and come out elsewhere.
+    pub fn has_inside(&self) -> bool {
+        self.parts.iter().any(|part| match &part.closure {
+            Closure::Layered(surface) => surface.subsurface.is_some(),
+            closure => matches!(closure, Closure::Beneath { .. }),
+        })
     }
 
     /// True where some part of it scatters.

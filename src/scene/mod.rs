@@ -6,6 +6,7 @@ mod asked;
 mod effects;
 mod framing;
 mod ids;
+mod inside;
 mod instance;
 mod interaction;
 mod material;
@@ -15,6 +16,7 @@ mod shading;
 mod shutter;
 mod spot;
 mod surroundings;
+mod terminator;
 mod trace;
 
 pub use effects::Effects;
@@ -24,6 +26,7 @@ pub use interaction::Interaction;
 pub use material::{Coverage, Material};
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
+pub use terminator::Terminator;
 pub use trace::{MAX_TRANSPARENT, RayCone};
 
 use std::sync::Arc;
@@ -68,6 +71,8 @@ pub struct Scene {
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,
+    /// By instance, the shape alone where light may walk in its inside; empty where it does so nowhere.
+    insides: Vec<Option<Bvh>>,
     shapes: Vec<Shape>,
     instances: Vec<Instance>,
     materials: Vec<Material>,

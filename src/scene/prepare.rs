@@ -30,7 +30,9 @@ use super::framing::world_bounds;
 use super::shutter::Shutter;
 use super::surroundings::Surroundings;
 use super::{Effects, Ids, Scene};
-use crate::desc::{self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, Visibility};
+use crate::desc::{
+    self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, TerminatorDesc, Visibility,
+};
 use crate::error::{Error, Result, Warnings};
 use crate::film::{Chosen, PassSet, Quantity};
 use crate::light::{AnyEmitter, Light, LightSet, Strategy};
@@ -77,7 +79,7 @@ pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prep
 pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache: &mut Cache) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
-    flattened::prepare(&mut desc, &mut warnings);
+    flattened::prepare(&mut desc);
     let (camera_desc, whole) = camera::choose(&desc, view, &mut warnings)?;
     let size = cropped(&desc, whole)?;
     let origin = render_space_origin(&desc, camera_desc.transform.translation);
@@ -100,7 +102,11 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     });
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
-    let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, cache, &mut warnings);
+    let terminator = TerminatorDesc {
+        geometry: settings.shadow_terminator_geometry_offset,
+        shading: settings.shadow_terminator_shading_offset,
+    };
+    let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, terminator, cache, &mut warnings);
     let build_time = start.elapsed();
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 
@@ -144,6 +150,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
+        insides: geometry.insides,
         shapes: geometry.shapes,
         instances: geometry.instances,
         materials,

@@ -2,7 +2,7 @@
 
 use super::material::{Lookups, NormalInput, Part, ScalarInput};
 use super::{Interaction, Scene};
-use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Stretched};
+use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Softening, Stretched};
 use crate::desc::AnisotropyLaw;
 use crate::desc::graph::Value;
 use crate::math::{DVec3, Frame, Rgb, Vec3, sqr};
@@ -46,8 +46,7 @@ impl Scene {
     /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it.
     pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32) -> Bsdf {
         let material = self.material(it);
-        let ng = if it.front { it.ng } else { -it.ng };
-        let mut builder = Builder::new(frame.to_local(it.wo), frame.to_local(ng), it.front);
+        let mut builder = self.builder(it, frame);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
         for part in &material.parts {
@@ -56,13 +55,32 @@ impl Scene {
             if let Closure::Layered(surface) = &mut closure
                 && let Some([r, g, b, _]) = self.vertex_color(it)
             {
-                surface.base_color *= Rgb::new(r, g, b);
+                let color = Rgb::new(r, g, b);
+                surface.base_color *= color;
+                if let Some(subsurface) = &mut surface.subsurface {
+                    subsurface.color *= color;
+                }
             }
             let normal = part.bends.is_some().then(|| self.bend(it, frame, part, &lookups, &mut closure)).flatten();
             builder.set_normal(normal);
             builder.add(Rgb::splat(lookups.scalar(&part.weight).max(0.0) * share), &closure);
         }
         builder.finish()
+    }
+
+    /// For what scatters at `it`, in the shading frame `frame`.
+    pub fn builder(&self, it: &Interaction, frame: &Frame) -> Builder {
+        let side = if it.front { 1.0 } else { -1.0 };
+        let mut builder = Builder::new(frame.to_local(it.wo), frame.to_local(it.ng * side), it.front);
+        let bumps = self.material(it).bumps;
+        let frequency = self.instance(it.instance).terminator.frequency;
+        if it.ns != it.ng {
+            builder.set_smooth(frame.to_local(it.ns * side));
+        }
+        if bumps || frequency > 1.0 {
+            builder.soften(Softening { frequency, bumps });
+        }
+        builder
     }
 
     /// Turns what has a normal or a tangent of its own; the frame of the whole part, if it has one.

@@ -111,6 +111,14 @@ impl Shape {
         }
     }
 
+    /// Corners and shading normals of a triangle in the shape's space; `None` where it has none.
+    pub fn smooth_triangle(&self, primitive: u32) -> Option<([Vec3; 3], [Vec3; 3])> {
+        match self {
+            Self::Mesh(mesh) => Some((mesh.corners(primitive), mesh.corner_normals(primitive)?)),
+            Self::Rounds(_) => None,
+        }
+    }
+
     /// Material slot of `primitive`.
     pub fn slot(&self, primitive: u32) -> usize {
         match self {

@@ -113,10 +113,6 @@ def side_by_side(name, folder, spp=256, size=64):
                     "use_pass_diffuse_color", "use_pass_ambient_occlusion", "use_pass_environment"):
             setattr(layer, box, True)
         layer.penumbra.use_pass_shadow = True
-    for obj in scene.objects:
-        for holder in (obj, getattr(obj, "cycles", None)):
-            if hasattr(holder, "shadow_terminator_geometry_offset"):
-                holder.shadow_terminator_geometry_offset = 0.0
     cycles = scene.cycles
     cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = int(spp), False, False
     cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, 0.0

@@ -611,3 +611,100 @@ def shader_aovs():
     direction = tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"]
     tree.links.new(direction, _aov(tree, "Place").inputs["Color"])
     _aov(tree, "Mark", value=6.0)
+
+
+def _ball(name, location=(0.0, 0.0, 0.0), node_type="ShaderNodeBsdfPrincipled", **inputs):
+    """A smooth ball before a dark room, of one shader; the shader's node."""
+    room(material("Dark", "ShaderNodeBsdfDiffuse", Color=(0.2, 0.2, 0.2, 1.0)))
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=1.0, location=(0.0, -1.0, 1.01))
+    bpy.ops.object.shade_smooth()
+    matter = material(name, node_type, **inputs)
+    bpy.context.object.data.materials.append(matter)
+    return next(node for node in matter.node_tree.nodes if node.bl_idname == node_type)
+
+
+def _side_light():
+    lamp("AREA", (3.0, -1.5, 3.0), (0.2, 0.8, 0.0), energy=200.0, size=0.5)
+    world(0.2)
+
+
+def wax():
+    """Light beneath a ball, of another radius in each channel."""
+    node = _ball("Wax", Base_Color=(0.8, 0.6, 0.3, 1.0), Roughness=0.3, Subsurface_Weight=0.9,
+                 Subsurface_Radius=(1.0, 0.5, 0.2), Subsurface_Scale=2.0, Subsurface_Anisotropy=0.3)
+    node.subsurface_method = "RANDOM_WALK"
+    _side_light()
+
+
+def skin():
+    node = _ball("Skin", Base_Color=(0.8, 0.5, 0.4, 1.0), Roughness=0.5, Subsurface_Weight=1.0,
+                 Subsurface_Radius=(1.0, 0.2, 0.1), Subsurface_Scale=0.3)
+    node.subsurface_method = "RANDOM_WALK_SKIN"
+    _side_light()
+
+
+def burley():
+    node = _ball("Wax", Base_Color=(0.8, 0.6, 0.3, 1.0), Roughness=0.4, Subsurface_Weight=1.0,
+                 Subsurface_Radius=(1.0, 0.5, 0.2), Subsurface_Scale=2.0)
+    node.subsurface_method = "BURLEY"
+    _side_light()
+
+
+def candle():
+    """A thin slab before a lamp."""
+    room()
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, -1.0, 1.1))
+    bpy.context.object.scale = (2.4, 0.1, 2.0)
+    matter = material("Slab", "ShaderNodeSubsurfaceScattering", Color=(0.9, 0.7, 0.5, 1.0), Scale=1.5,
+                      Radius=(1.0, 0.6, 0.3), Roughness=0.6)
+    next(node for node in matter.node_tree.nodes if node.type == "SUBSURFACE_SCATTERING").falloff = "RANDOM_WALK"
+    bpy.context.object.data.materials.append(matter)
+    lamp("POINT", (0.3, 0.2, 1.5), energy=150.0, shadow_soft_size=0.1)
+
+
+def _terminator(obj, geometry=None, shading=None):
+    """Sets the shadow terminator, wherever a version of Blender has it."""
+    new = hasattr(obj, "shadow_terminator_shading_offset")
+    holder = obj if new else obj.cycles
+    if geometry is not None:
+        holder.shadow_terminator_geometry_offset = geometry
+    if shading is not None:
+        setattr(holder, "shadow_terminator_shading_offset" if new else "shadow_terminator_offset", shading)
+
+
+def _coarse_balls(matter):
+    """Smooth balls of few triangles, lit from the side; each with a shadow terminator of its own."""
+    room(material("Dark", "ShaderNodeBsdfDiffuse", Color=(0.2, 0.2, 0.2, 1.0)))
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    for x, geometry, shading in ((-1.6, 0.0, 0.0), (0.0, None, None), (1.6, 0.3, 0.5)):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=7, radius=0.7, location=(x, -1.0, 0.9))
+        bpy.ops.object.shade_smooth()
+        _terminator(bpy.context.object, geometry, shading)
+        bpy.context.object.data.materials.append(matter)
+
+
+def coarse():
+    _coarse_balls(material("Clay", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6, 1.0)))
+    lamp("SUN", rotation=(0.2, 1.2, 0.0), energy=3.0, angle=0.02)
+    lamp("POINT", (-4.0, -4.0, 3.0), energy=200.0, shadow_soft_size=0.1)
+
+
+def bumpy():
+    """Waves by a bump node on smooth balls, light from the side."""
+    matter = material("Waves", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6, 1.0))
+    tree = matter.node_tree
+    shader = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    bump, waves = tree.nodes.new("ShaderNodeBump"), tree.nodes.new("ShaderNodeTexWave")
+    bump.inputs["Distance"].default_value = 0.04
+    waves.inputs["Scale"].default_value = 1.5
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], waves.inputs["Vector"])
+    tree.links.new(waves.outputs["Color"], bump.inputs["Height"])
+    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    _coarse_balls(matter)
+    lamp("SUN", rotation=(0.2, 1.2, 0.0), energy=3.0, angle=0.02)
+    world(0.1)

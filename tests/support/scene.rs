@@ -72,6 +72,7 @@ impl Builder {
             shaped: None,
             holdout: false,
             catcher: false,
+            terminator: None,
         });
     }
 

@@ -170,6 +170,7 @@ class Exporter:
             "visibility": {**self.visibility(obj), **self._seen_by_camera(obj)},
             "holdout": self._layer_says("holdout_get", obj),
             "shadow_catcher": obj.is_shadow_catcher,
+            "terminator": _terminator(obj),
             "lightgroup": obj.lightgroup,
         })
         self._links.append((self._objects[-1], obj))
@@ -307,3 +308,13 @@ def _finite(value):
     if isinstance(value, float) and not np.isfinite(value):
         return 0.0
     return value
+
+
+def _terminator(obj):
+    """How the edge of an object's own shadow is softened: its own property since 4.5, Cycles' before."""
+    if hasattr(obj, "shadow_terminator_shading_offset"):
+        shading, holder = obj.shadow_terminator_shading_offset, obj
+    else:
+        holder = getattr(obj, "cycles", None)
+        shading = getattr(holder, "shadow_terminator_offset", 0.0)
+    return {"geometry": getattr(holder, "shadow_terminator_geometry_offset", 0.1), "shading": shading}

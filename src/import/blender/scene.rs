@@ -245,6 +245,7 @@ impl BlenderScene {
                 shaped: None,
                 holdout: data.holdout,
                 catcher: data.shadow_catcher,
+                terminator: Some(data.terminator.into()),
                 info: ObjectInfo {
                     color: data.color,
                     random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },

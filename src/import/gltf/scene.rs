@@ -334,6 +334,7 @@ impl Builder<'_> {
                     shaped: None,
                     holdout: false,
                     catcher: false,
+                    terminator: None,
                 });
             }
         }

@@ -115,6 +115,7 @@ pub(super) fn place(
             shaped: shaped.map(|shaped| shaped.placed(&found.pose.world).into()),
             holdout: false,
             catcher: false,
+            terminator: None,
         });
     }
 }

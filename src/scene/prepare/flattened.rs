@@ -4,22 +4,22 @@
 use std::sync::Arc;
 
 use crate::desc::{Attribute, InstanceDesc, MeshDesc, SceneDesc, ShapeRef};
-use crate::error::Warnings;
 use crate::math::{DAffine3, DMat3, DVec3};
 
 /// An axis counts as gone where the others leave it less than this share of the box that they span: what is left
 /// of it is rounding.
 const FLAT: f64 = 1e-12;
 
-/// Flattens the meshes of `desc` that flat instances show, each in a copy of its own.
-pub fn prepare(desc: &mut SceneDesc, warnings: &mut Warnings) {
+/// Flattens the meshes of `desc` that flat instances show, each in a copy of its own, which stands still.
+pub fn prepare(desc: &mut SceneDesc) {
     let SceneDesc { instances, meshes, .. } = desc;
-    for instance in instances.iter_mut().filter(|instance| is_flat(&instance.transform)) {
+    // What is flat for an instant of the shutter alone is not.
+    let flat = |instance: &&mut InstanceDesc| {
+        is_flat(&instance.transform) && instance.motion.iter().all(|moved| is_flat(&moved.value))
+    };
+    for instance in instances.iter_mut().filter(flat) {
         // Strands and balls would be ribbons and disks; they are left out where they are placed.
         let ShapeRef::Mesh(mesh) = instance.shape else { continue };
-        if !instance.motion.is_empty() {
-            warnings.push(&instance.place, "its transform is singular: it stands still while the shutter is open");
-        }
         meshes.push(Arc::new(flattened(&meshes[mesh as usize], &instance.transform)));
         *instance = InstanceDesc {
             shape: ShapeRef::Mesh(meshes.len() as u32 - 1),

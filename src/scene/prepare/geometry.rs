@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::cache::{Cache, Ready};
 use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
-use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef};
+use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef, TerminatorDesc};
 use crate::error::Warnings;
 use crate::math::{Bounds, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
 use crate::scene::shutter::{Keys, Shutter};
@@ -24,15 +24,18 @@ pub struct Geometry {
     pub placed: Vec<u32>,
     /// The tree.
     pub bvh: Bvh,
+    /// Of each of `instances` whose inside light may walk in, a tree of its own; empty where there is none.
+    pub insides: Vec<Option<Bvh>>,
 }
 
-/// Prepares all shapes that are placed, in parallel.
+/// Prepares all shapes that are placed, in parallel; `terminator` is that of objects which have none of their own.
 pub fn prepare(
     desc: &SceneDesc,
     origin: DVec3,
     shutter: Option<Shutter>,
     materials: &[Material],
     links: &Links,
+    terminator: TerminatorDesc,
     cache: &mut Cache,
     warnings: &mut Warnings,
 ) -> Geometry {
@@ -64,13 +67,14 @@ pub fn prepare(
     let (shapes, blases): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
+    let mut insides = Vec::new();
     for (i, instance) in desc.instances.iter().enumerate() {
         let shape = index(instance.shape);
         if shapes[shape].is_empty() {
             continue;
         }
-        let Some(mut prepared) = place(instance, shape as u32, &shapes[shape], origin, shutter, default_material)
-        else {
+        let placed_at = place(instance, shape as u32, &shapes[shape], origin, shutter, default_material, terminator);
+        let Some(mut prepared) = placed_at else {
             warnings.push(&instance.place, "transform is singular, not finite or out of range: object left out");
             continue;
         };
@@ -83,10 +87,18 @@ pub fn prepare(
             motion: prepared.motion.clone(),
             mask: mask::of(instance.visibility, cutout, emits, instance.catcher, links.blocker_class(i)),
         });
+        let has_inside = prepared.materials.iter().any(|&m| materials[m as usize].has_inside());
+        insides.push(has_inside.then(|| {
+            let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1] };
+            Bvh::build(vec![blases[shape].clone()], vec![alone])
+        }));
         instances.push(prepared);
         placed.push(i as u32);
     }
-    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes) }
+    if insides.iter().all(Option::is_none) {
+        insides.clear();
+    }
+    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides }
 }
 
 /// The middle of the box of `points`, and the points relative to it.
@@ -177,6 +189,7 @@ fn place(
     origin: DVec3,
     shutter: Option<Shutter>,
     default_material: u32,
+    terminator: TerminatorDesc,
 ) -> Option<Instance> {
     let center = shape.center();
     let to_render = DAffine3::from_translation(-origin) * desc.transform * DAffine3::from_translation(center);
@@ -205,5 +218,6 @@ fn place(
         profile: None,
         holdout: desc.holdout,
         catcher: desc.catcher,
+        terminator: desc.terminator.unwrap_or(terminator).into(),
     })
 }

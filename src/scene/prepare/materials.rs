@@ -19,7 +19,7 @@ use crate::math::Rgb;
 use crate::scene::Material;
 use crate::scene::asked::Names;
 use crate::scene::effects;
-use crate::scene::material::{ColorInput, NormalInput, Opacity, Programs, ScalarInput, Varying, rgb_of, single};
+use crate::scene::material::{ColorInput, NormalInput, Opacity, Part, Programs, ScalarInput, Varying, rgb_of, single};
 use crate::settings::Settings;
 use crate::texture::graph::Program;
 use crate::texture::{Image, Texture, TextureRef};
@@ -364,6 +364,8 @@ impl Builder<'_> {
             occlusion: occluded,
             aovs: self.program(inputs),
         };
+        let of_part = |part: &Part| part.bends.as_ref().is_some_and(|bends| bends.normal.is_some());
+        let bumps = normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part);
         Material {
             parts,
             alpha,
@@ -380,6 +382,7 @@ impl Builder<'_> {
             unlit: desc.unlit,
             holdout: desc.holdout,
             normal: normal_map,
+            bumps,
             occlusion,
             aovs,
             programs: programs.any().then(|| Arc::new(programs)),

@@ -34,6 +34,8 @@ pub struct ObjectData {
     pub holdout: bool,
     /// `is_shadow_catcher`.
     pub shadow_catcher: bool,
+    /// The shadow terminator of its Shading panel.
+    pub terminator: TerminatorData,
     /// Light group of what it emits.
     pub lightgroup: String,
     /// Whom its light falls on (light linking).
@@ -54,10 +56,33 @@ impl Default for ObjectData {
             visibility: VisibilityData::default(),
             holdout: false,
             shadow_catcher: false,
+            terminator: TerminatorData::default(),
             lightgroup: String::new(),
             receivers: None,
             blockers: None,
         }
+    }
+}
+
+/// `shadow_terminator_geometry_offset` and `shadow_terminator_shading_offset`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default)]
+pub struct TerminatorData {
+    /// Of the geometry.
+    pub geometry: f64,
+    /// Of the shading.
+    pub shading: f64,
+}
+
+impl Default for TerminatorData {
+    fn default() -> Self {
+        Self { geometry: 0.1, shading: 0.0 }
+    }
+}
+
+impl From<TerminatorData> for crate::desc::TerminatorDesc {
+    fn from(TerminatorData { geometry, shading }: TerminatorData) -> Self {
+        Self { geometry, shading }
     }
 }
 

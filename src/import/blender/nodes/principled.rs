@@ -1,9 +1,11 @@
 //! The Principled BSDF as a layered surface.
 
 use super::flow::{At, Flow};
-use super::surface::{alpha_mode, anisotropy, color, film, fixed, input, normal, number, scalar, solid};
+use super::surface::{
+    alpha_mode, anisotropy, color, film, fixed, input, normal, number, optional, scalar, solid, subsurface,
+};
 use crate::desc::graph::{Function, Leaf, Math, ValueId};
-use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, ScalarInput, SheenDesc};
+use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, SheenDesc, SubsurfaceDesc};
 
 /// `base` as the surface of the node alone.
 pub fn alone<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, base: MaterialDesc) -> MaterialDesc {
@@ -30,7 +32,7 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
         base_color: input(flow, at, "Base Color"),
         metallic: number(flow, at, "Metallic"),
         metal_edge: input(flow, at, "Specular Tint"),
-        diffuse_roughness: optional(flow, at, "Diffuse Roughness"),
+        diffuse_roughness: optional(flow, at, "Diffuse Roughness", 0.0),
         roughness: number(flow, at, "Roughness"),
         multiscatter: at.node.text("distribution") != "GGX",
         ior: fixed(flow, ior, "the IOR", 1.5),
@@ -38,6 +40,7 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
         specular_level: scalar(flow, level),
         transmission,
         volume: (transmission.factor > 0.0).then(solid),
+        subsurface: beneath(flow, at),
         coat: coat(flow, at),
         sheen: sheen(flow, at),
         iridescence: film(flow, at),
@@ -45,10 +48,6 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
         normal: normal(flow, at, "Normal"),
         ..MaterialDesc::default()
     };
-    let subsurface = flow.input(at, "Subsurface Weight");
-    if flow.graph.known(subsurface) != Some([0.0; 4]) {
-        flow.warn("Subsurface Weight of the Principled BSDF: not computed yet, it is diffuse");
-    }
     let alpha = flow.input(at, "Alpha");
     let (color, strength) = (flow.input(at, "Emission Color"), flow.input(at, "Emission Strength"));
     let emission = flow.graph.multiply(color, strength);
@@ -92,12 +91,14 @@ fn covered<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, emission: ValueId) -> ValueI
     flow.graph.multiply(emission, tint)
 }
 
-/// An input that older versions lack; 0 there.
-fn optional<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> ScalarInput {
-    match at.node.input(name) {
-        Some(_) => number(flow, at, name),
-        None => ScalarInput::constant(0.0),
+fn beneath<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<SubsurfaceDesc> {
+    let weight = number(flow, at, "Subsurface Weight");
+    if weight.factor <= 0.0 {
+        return None;
     }
+    let method = at.node.text("subsurface_method");
+    let names = ["Base Color", "Subsurface Radius", "Subsurface Scale", "Subsurface Anisotropy", "Subsurface IOR"];
+    Some(SubsurfaceDesc { weight, ..subsurface(flow, at, method, names) })
 }
 
 fn coat<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<CoatDesc> {

@@ -11,7 +11,7 @@ use super::principled::{self, principled};
 use crate::desc::graph::{Leaf, ValueId};
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, ClosureDesc, ColorInput, FacetsDesc, IridescenceDesc, MaterialDesc,
-    NormalInput, PartDesc, ScalarInput, SheenDesc, VolumeDesc,
+    NormalInput, PartDesc, ScalarInput, SheenDesc, SubsurfaceDesc, SubsurfaceMethod, VolumeDesc,
 };
 
 /// What the nodes of a surface come to.
@@ -141,9 +141,9 @@ fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum
             glossy: at.node.text("component") == "GLOSSY",
         },
         "ShaderNodeSubsurfaceScattering" => {
-            flow.warn("Subsurface Scattering is rendered as a diffuse surface");
-            let color = input(flow, at, "Color");
-            ClosureDesc::Diffuse { color, roughness: ScalarInput::constant(0.0), multiscatter: false }
+            let names = ["Color", "Radius", "Scale", "Anisotropy", "IOR"];
+            let subsurface = subsurface(flow, at, at.node.text("falloff"), names);
+            ClosureDesc::Beneath { subsurface, alpha: optional(flow, at, "Roughness", 1.0) }
         }
         kind => {
             return flow.warn(format!("the shader \"{}\" ({kind}) is not supported; it is black", at.node.name));
@@ -151,6 +151,31 @@ fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum
     };
     let normal = normal(flow, at, "Normal");
     sum.parts.push(PartDesc { weight: scalar(flow, weight), normal, closure });
+}
+
+/// Light beneath the surface, by the names of the inputs: color, radius, scale, anisotropy, index.
+pub(super) fn subsurface<'a>(
+    flow: &mut Flow<'a, '_>,
+    at: At<'a>,
+    method: &str,
+    [color, radius, scale, anisotropy, ior]: [&str; 5],
+) -> SubsurfaceDesc {
+    let color = input(flow, at, color);
+    let (radius, scale) = (flow.input(at, radius), flow.input(at, scale));
+    let radius = flow.graph.multiply(radius, scale);
+    SubsurfaceDesc {
+        weight: ScalarInput::constant(1.0),
+        color,
+        radius: self::color(flow, radius),
+        anisotropy: optional(flow, at, anisotropy, 0.0),
+        ior: optional(flow, at, ior, 1.4),
+        method: match method {
+            "RANDOM_WALK_SKIN" => SubsurfaceMethod::RandomWalkSkin,
+            "BURLEY" => SubsurfaceMethod::Burley,
+            _ => SubsurfaceMethod::RandomWalk,
+        },
+        shallow: flow.version < [5, 0, 0] || method == "BURLEY",
+    }
 }
 
 fn glossy<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ClosureDesc {
@@ -236,6 +261,14 @@ pub(super) fn input<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> Colo
 pub(super) fn number<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> ScalarInput {
     let value = flow.input(at, name);
     scalar(flow, value)
+}
+
+/// An input that some versions lack; `otherwise` there.
+pub(super) fn optional<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str, otherwise: f64) -> ScalarInput {
+    match at.node.input(name) {
+        Some(_) => number(flow, at, name),
+        None => ScalarInput::constant(otherwise),
+    }
 }
 
 /// A value as an input, a constant as such.

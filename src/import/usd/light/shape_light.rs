@@ -337,6 +337,7 @@ mod tests {
                     shaped: None,
                     holdout: false,
                     catcher: false,
+                    terminator: None,
                 });
             }
             let kind = crate::desc::LightKind::Dome { radiance: [1.0; 3], image: None };

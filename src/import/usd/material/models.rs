@@ -7,7 +7,8 @@ use super::closure;
 use super::evaluate::Evaluator;
 use super::expr::Id;
 use super::network::Source;
-use super::surface::{Alpha, Coat, Film, Surface};
+use super::surface::{Alpha, Beneath, Coat, Film, Surface};
+use crate::desc::SubsurfaceMethod;
 use crate::desc::graph::{Function, Math};
 
 /// Reflectance at normal incidence of index 1.5.
@@ -70,7 +71,12 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let subsurface = e.scalar(node, "subsurface", 0.0);
     let beneath = e.input(node, "subsurface_color", [1.0; 4]);
     s.thin_walled = e.uniform(node, "thin_walled", 0.0) != 0.0;
-    scatter_beneath(e, node, &mut s, [base, beneath, subsurface], 1.0);
+    if s.thin_walled {
+        pass_thin_wall(e, &mut s, [base, beneath, subsurface], 1.0);
+    } else {
+        let radius = weighted(e, node, ["subsurface_scale", "subsurface_radius"], [1.0, 1.0]);
+        scatter_beneath(e, node, &mut s, [base, beneath, subsurface, radius], "subsurface_anisotropy");
+    }
     s.diffuse_roughness = e.scalar(node, "diffuse_roughness", 0.0);
     s.metallic = e.scalar(node, "metalness", 0.0);
     s.specular = e.scalar(node, "specular", 1.0);
@@ -128,8 +134,15 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let subsurface = e.scalar(node, "subsurface_weight", 0.0);
     let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
     s.thin_walled = e.uniform(node, "geometry_thin_walled", 0.0) != 0.0;
-    let forward = 0.5 + 0.5 * e.uniform(node, "subsurface_scatter_anisotropy", 0.0).clamp(-1.0, 1.0);
-    scatter_beneath(e, node, &mut s, [base, beneath, subsurface], forward);
+    if s.thin_walled {
+        let forward = 0.5 + 0.5 * e.uniform(node, "subsurface_scatter_anisotropy", 0.0).clamp(-1.0, 1.0);
+        pass_thin_wall(e, &mut s, [base, beneath, subsurface], forward);
+    } else {
+        let (scale, longest) = (e.input(node, "subsurface_radius_scale", [1.0, 0.5, 0.25, 1.0]), "subsurface_radius");
+        let longest = e.scalar(node, longest, 1.0);
+        let radius = e.exprs.multiply(scale, longest);
+        scatter_beneath(e, node, &mut s, [base, beneath, subsurface, radius], "subsurface_scatter_anisotropy");
+    }
     s.diffuse_roughness = e.scalar(node, "base_diffuse_roughness", 0.0);
     s.metallic = e.scalar(node, "base_metalness", 0.0);
     s.specular = e.scalar(node, "specular_weight", 1.0);
@@ -238,22 +251,35 @@ fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
     }
 }
 
-/// The diffuse part: `base`, and by its weight what light that is scattered `beneath` comes to. In a thin wall
-/// the share `forward` of that leaves on the other side; elsewhere it is reflected where it came in.
+/// The diffuse part: `base`, and by its weight light that is scattered `beneath` on paths of a `radius` in the stage's
+/// units. Blender writes its own radius, which is no mean free path.
 fn scatter_beneath(
     e: &mut Evaluator<'_, '_>,
     node: usize,
     s: &mut Surface,
-    [base, beneath, weight]: [Id; 3],
-    forward: f64,
+    [base, beneath, weight, radius]: [Id; 4],
+    anisotropy: &str,
 ) {
+    s.base_color = base;
     if e.exprs.is(weight, 0.0) {
-        s.base_color = base;
         return;
     }
-    if !s.thin_walled {
-        e.warn(node, "its subsurface scattering is rendered as diffuse reflection of the same color");
-        s.base_color = e.exprs.mix(base, beneath, weight);
+    let reading = &e.materials.reading;
+    let (meters, blender) = (reading.meters, reading.blender);
+    s.beneath = Some(Beneath {
+        weight,
+        color: beneath,
+        radius: e.exprs.scale(radius, meters),
+        anisotropy: e.scalar(node, anisotropy, 0.0),
+        method: if blender { SubsurfaceMethod::RandomWalk } else { SubsurfaceMethod::FreePath },
+    });
+}
+
+/// The diffuse part of a thin wall: of what light that is scattered `beneath` comes to, the share `forward` leaves on
+/// the other side.
+fn pass_thin_wall(e: &mut Evaluator<'_, '_>, s: &mut Surface, [base, beneath, weight]: [Id; 3], forward: f64) {
+    if e.exprs.is(weight, 0.0) {
+        s.base_color = base;
         return;
     }
     let x = &mut e.exprs;

@@ -8,7 +8,7 @@ use super::lower::Lowering;
 use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
+    NormalInput, ScalarInput, SheenDesc, SubsurfaceDesc, SubsurfaceMethod, TranslucentDesc, VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -22,6 +22,8 @@ pub(super) struct Surface {
     pub diffuse_roughness: Id,
     /// Share of the diffuse light that leaves on the other side, and its color.
     pub translucent: Option<(Id, Id)>,
+    /// Light that scatters beneath, in place of diffuse light.
+    pub beneath: Option<Beneath>,
     /// Perceptual.
     pub roughness: Id,
     pub ior: Id,
@@ -45,6 +47,17 @@ pub(super) struct Surface {
     pub alpha: Alpha,
     pub normal: Option<Id>,
     pub occlusion: Option<Id>,
+}
+
+/// See [`SubsurfaceDesc`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beneath {
+    pub weight: Id,
+    pub color: Id,
+    /// Metres.
+    pub radius: Id,
+    pub anisotropy: Id,
+    pub method: SubsurfaceMethod,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +117,7 @@ impl Surface {
             metal_edge: one,
             diffuse_roughness: zero,
             translucent: None,
+            beneath: None,
             roughness: x.number(0.5),
             ior: x.number(1.5),
             specular: one,
@@ -180,6 +194,16 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
     let translucent = surface.translucent.filter(|(weight, _)| !f.e.exprs.is(*weight, 0.0));
     material.translucent =
         translucent.map(|(weight, color)| TranslucentDesc { weight: f.scalar(weight), color: f.color(color) });
+    let ior = ScalarInput::constant(material.ior);
+    material.subsurface = surface.beneath.map(|beneath| SubsurfaceDesc {
+        weight: f.scalar(beneath.weight),
+        color: f.color(beneath.color),
+        radius: f.color(beneath.radius),
+        anisotropy: f.scalar(beneath.anisotropy),
+        ior,
+        method: beneath.method,
+        shallow: false,
+    });
     material.sheen = surface
         .sheen
         .filter(|(color, _)| !f.e.exprs.is(*color, 0.0))

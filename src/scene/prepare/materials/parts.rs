@@ -1,9 +1,12 @@
 //! What scatters: the layered surface of a material or the mixture that is there in its place.
 
 use super::{Builder, Inputs};
-use crate::bsdf::{Closure, Coat, Conductor, Microfacets, Sheen, Surface, ThinFilm};
+use crate::bsdf::{Closure, Coat, Conductor, Method, Microfacets, Sheen, Subsurface, Surface, ThinFilm};
 use crate::desc::graph::ValueId;
-use crate::desc::{self, AnisotropyDesc, ClosureDesc, FacetsDesc, IridescenceDesc, MaterialDesc, SheenDesc};
+use crate::desc::{
+    self, AnisotropyDesc, ClosureDesc, FacetsDesc, IridescenceDesc, MaterialDesc, SheenDesc, SubsurfaceDesc,
+    SubsurfaceMethod,
+};
 use crate::math::Rgb;
 use crate::scene::material::{ColorInput, Part, ScalarInput, Varying};
 use crate::scene::shading::{Anisotropy, Bends, NormalSource};
@@ -53,6 +56,10 @@ impl Builder<'_> {
                 roughness: self.scalar(inputs, roughness),
                 multiscatter: *multiscatter,
             }),
+            ClosureDesc::Beneath { subsurface, alpha } => {
+                let alpha = self.scalar(inputs, alpha);
+                Bent::from(Closure::Beneath { subsurface: self.subsurface(inputs, subsurface), alpha })
+            }
             ClosureDesc::Translucent { color } => Bent::from(Closure::Translucent { color: self.color(inputs, color) }),
             ClosureDesc::Glossy { color, facets } => {
                 let color = self.color(inputs, color);
@@ -94,6 +101,7 @@ impl Builder<'_> {
     fn layers(&mut self, inputs: &mut Inputs<'_>, desc: &MaterialDesc) -> Bent {
         let translucent = desc.translucent.as_ref();
         let ior = if desc.ior.is_finite() && desc.ior >= 0.0 { desc.ior as f32 } else { 1.5 };
+        let beneath = desc.subsurface.as_ref().filter(|beneath| beneath.weight.factor > 0.0);
         let coat = desc.coat.as_ref().filter(|coat| coat.weight.factor > 0.0);
         let sheen = desc.sheen.as_ref().filter(|sheen| sheen.color.factor.iter().any(|&c| c > 0.0));
         let surface = Surface {
@@ -112,6 +120,7 @@ impl Builder<'_> {
             thin: desc.volume.is_none_or(|volume| volume.thickness.factor <= 0.0),
             translucent: translucent.map_or(number(0.0), |t| self.scalar(inputs, &t.weight)),
             translucent_color: translucent.map_or(white(), |t| self.color(inputs, &t.color)),
+            subsurface: beneath.map(|beneath| self.subsurface(inputs, beneath)),
             coat: coat.map(|coat| Coat {
                 weight: self.scalar(inputs, &coat.weight),
                 roughness: self.scalar(inputs, &coat.roughness),
@@ -132,6 +141,23 @@ impl Builder<'_> {
         let anisotropy = desc.anisotropy.as_ref().and_then(|anisotropy| self.anisotropy(inputs, anisotropy));
         let facets = Microfacets { roughness, stretched: None, multiscatter: desc.multiscatter };
         (facets, Bends { anisotropy, ..Bends::default() })
+    }
+
+    fn subsurface(&mut self, inputs: &mut Inputs<'_>, desc: &SubsurfaceDesc) -> Subsurface<ColorInput, ScalarInput> {
+        Subsurface {
+            weight: self.scalar(inputs, &desc.weight),
+            color: self.color(inputs, &desc.color),
+            radius: self.color(inputs, &desc.radius),
+            anisotropy: self.scalar(inputs, &desc.anisotropy),
+            ior: self.scalar(inputs, &desc.ior),
+            method: match desc.method {
+                SubsurfaceMethod::RandomWalk => Method::Walk,
+                SubsurfaceMethod::RandomWalkSkin => Method::Skin,
+                SubsurfaceMethod::FreePath => Method::FreePath,
+                SubsurfaceMethod::Burley => Method::Profile,
+            },
+            shallow: desc.shallow,
+        }
     }
 
     fn sheen(&mut self, inputs: &mut Inputs<'_>, desc: &SheenDesc) -> Sheen<ColorInput, ScalarInput> {

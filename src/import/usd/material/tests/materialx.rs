@@ -103,7 +103,12 @@ fn open_pbr_of_blender() {
     same(&[m.iridescence.unwrap().thickness.factor, m.coat.unwrap().ior], &[300.0, 1.5]);
     let anisotropy = m.anisotropy.unwrap();
     same(&[anisotropy.strength.factor, anisotropy.rotation.factor], &[0.21 / 0.9, std::f64::consts::FRAC_PI_2]);
-    assert!(read.warnings.contains("subsurface") && read.warnings.lines().count() == 1, "{}", read.warnings);
+    let beneath = m.subsurface.unwrap();
+    same(&[beneath.weight.factor, beneath.anisotropy.factor, beneath.ior.factor], &[0.2, 0.0, 1.5]);
+    // Of the stage's units, centimetres.
+    same(&beneath.radius.factor, &[0.01, 0.005, 0.0025]);
+    assert_eq!(beneath.method, crate::desc::SubsurfaceMethod::FreePath);
+    assert_eq!(read.warnings, "");
 }
 
 #[test]
