@@ -104,6 +104,22 @@ class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
             layout.prop(scene.world.light_settings, "distance")
 
 
+class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        layout, render = self._split(), context.scene.render
+        layout.active = render.use_motion_blur
+        column = layout.column()
+        column.prop(render, "motion_blur_position", text="Position")
+        column.prop(render, "motion_blur_shutter")
+
+
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
@@ -228,6 +244,7 @@ PANELS = (
     PENUMBRA_PT_sampling_advanced,
     PENUMBRA_PT_light_paths,
     PENUMBRA_PT_ambient_occlusion,
+    PENUMBRA_PT_motion_blur,
     PENUMBRA_PT_film,
     PENUMBRA_PT_performance,
     PENUMBRA_PT_passes,
