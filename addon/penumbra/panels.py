@@ -76,6 +76,7 @@ class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
         row.prop(own, "seed")
         row.prop(own, "use_animated_seed", text="", icon="TIME")
         layout.prop(own, "sampler", text="Pattern")
+        layout.prop(own, "specular_aa", text="Specular Anti-Aliasing")
         layout.prop(own, "effects")
 
 
@@ -90,6 +91,9 @@ class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
         column = layout.column()
         column.active = own.integrator == "path"
         column.prop(own, "max_bounces")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            column.prop(cycles, "blur_glossy")
 
 
 class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):

@@ -32,6 +32,6 @@ mod translucent;
 pub use closure::{Closure, Microfacets};
 pub use conductor::Conductor;
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
-pub use mixture::{Bsdf, Builder};
+pub use mixture::{Bsdf, Builder, Widening};
 pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
 pub use surface::{Coat, Sheen, Stretched, Surface, ThinFilm};

@@ -3,6 +3,7 @@
 
 mod aovs;
 mod asked;
+mod blur;
 mod effects;
 mod framing;
 mod ids;
@@ -16,6 +17,7 @@ mod spot;
 mod surroundings;
 mod trace;
 
+pub use blur::Blur;
 pub use effects::Effects;
 pub use ids::Ids;
 pub use instance::{Instance, mask};
