@@ -6,8 +6,8 @@ mod chi2;
 use std::f64::consts::{PI, TAU};
 
 use penumbra::bsdf::{
-    Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Lobe, Microfacets, Sheen, Stretched, Surface, ThinFilm, Widening,
-    f0_from_eta, fresnel_dielectric,
+    Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Lobe, Microfacets, Sheen, Stretched, Surface, ThinFilm,
+    Widening, f0_from_eta, fresnel_dielectric,
 };
 use penumbra::math::{Frame, Rgb, Vec3};
 use penumbra::sampling::{Dimension, Pattern, Sampler};
@@ -343,7 +343,11 @@ fn energy_is_kept_and_never_made() {
         for closure in [Some(case.closure), narrow].into_iter().flatten() {
             for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
                 for above in [true, false] {
-                    check_energy(case, &seen(&closure, view(degrees, 0.3, above), case.entering, case.widening), degrees);
+                    check_energy(
+                        case,
+                        &seen(&closure, view(degrees, 0.3, above), case.entering, case.widening),
+                        degrees,
+                    );
                 }
             }
         }

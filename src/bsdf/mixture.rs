@@ -102,10 +102,11 @@ impl Builder {
         self.widening = widening;
     }
 
-    /// Microfacets of these widths, made wider by normals that vary; `None` for a mirror.
+    /// Microfacets of these widths, which count up to 1, made wider by normals that vary; `None` for a mirror.
     pub(super) fn ggx(&self, widths: [f32; 2]) -> Option<Ggx> {
         let Widening { variance, .. } = self.widening;
-        Ggx::new(if variance > 0.0 { widths.map(|alpha| (alpha * alpha + variance).sqrt().min(1.0)) } else { widths })
+        let wider = |alpha: f32| if variance > 0.0 { (alpha * alpha + variance).sqrt() } else { alpha };
+        Ggx::new(widths.map(|alpha| wider(alpha).min(1.0)))
     }
 
     /// What is added from now on has the normal of `frame`, given within the surface's own; with `None` that of

@@ -88,7 +88,8 @@ fn add_coat(builder: &mut Builder, weight: Rgb, coat: &Coat) -> Rgb {
     if ior > 1.0 {
         let fresnel = Dielectric::new(ior, Rgb::splat(f0_from_eta(ior)), 1.0);
         let ggx = builder.ggx([sqr(unit(coat.roughness)); 2]);
-        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), false, wo);
+        // Cycles' coats keep what scatters more than once, whatever the distribution.
+        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), true, wo);
         below = left(lobe.albedo().above * share);
         builder.push(weight * share, Class::Interface, frame, lobe);
     }

@@ -13,6 +13,9 @@ const SQUARE: f32 = 1.0 / 12.0;
 /// Kaplanyan, *Improved Geometric Specular Antialiasing*, I3D 2019.
 const MOST_VARIANCE: f32 = 0.18;
 
+/// How far beyond a primitive its normals are followed, in its own coordinates.
+const MOST_STEP: f32 = 2.0;
+
 /// What widens the highlights of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Blur {
@@ -52,7 +55,8 @@ impl Scene {
     #[cold]
     fn normal_variance(&self, it: &Interaction, pixels: f32, normal: impl Fn(&Interaction) -> Vec3) -> f32 {
         let Some(steps) = self.tangents(it) else { return 0.0 };
-        let along = (it.wo - it.ng * it.wo.dot(it.ng)).try_normalize().unwrap_or_else(|| it.ng.any_orthonormal_vector());
+        let along =
+            (it.wo - it.ng * it.wo.dot(it.ng)).try_normalize().unwrap_or_else(|| it.ng.any_orthonormal_vector());
         let across = it.ng.cross(along);
         let cos = it.wo.dot(it.ng).abs().max(0.05);
         let here = normal(&Interaction { footprint: 0.0, ..*it });
@@ -83,7 +87,9 @@ impl Scene {
         let (a, b, c) = (du.length_squared(), du.dot(dv), dv.length_squared());
         let det = a * c - b * b;
         let (x, y) = (du.dot(by), dv.dot(by));
-        let at = [it.at[0] + (c * x - b * y) / det, it.at[1] + (a * y - b * x) / det];
+        // A change is not what a triangle would make of it over many of its like, which turn this way and that.
+        let step = |by: f32| (by / det).clamp(-MOST_STEP, MOST_STEP);
+        let at = [it.at[0] + step(c * x - b * y), it.at[1] + step(a * y - b * x)];
         if !(at[0].is_finite() && at[1].is_finite()) {
             return None;
         }

@@ -40,7 +40,9 @@ pub(super) fn moves(desc: &SceneDesc) -> bool {
 /// Tells of a shape whose points can't be followed through the shutter: their number changes, or they are not finite.
 pub(super) fn tell_of_still(name: &str, place: &Place, same_count: bool, warnings: &mut Warnings) {
     let why = if same_count { "are not all finite" } else { "change in number" };
-    let what = format!("the points of \"{name}\" {why} while the shutter is open; it keeps the shape that it has at the frame");
+    let what = format!(
+        "the points of \"{name}\" {why} while the shutter is open; it keeps the shape that it has at the frame"
+    );
     warnings.push(place, what);
 }
 

@@ -164,8 +164,7 @@ pub fn rounds(
         warnings.push(place, format!("{left_out} strands or points of \"{name}\" are not finite; they are left out"));
     }
     let uv_names = uvs.iter().map(|layer| layer.name.into()).collect();
-    let source =
-        moving.then(|| Source { points: points.to_vec(), radii: radii.to_vec(), ends: ends.to_vec(), smooth });
+    let source = moving.then(|| Source { points: points.to_vec(), radii: radii.to_vec(), ends: ends.to_vec(), smooth });
     Ok(NamedRounds { rounds: desc.into(), uv_names, source, dressed: None })
 }
 
