@@ -185,3 +185,64 @@ def stopped():
     moving = motion.Motion(scene, frame_set, lambda: len(seen) >= 1)
     Exporter(_Listener()).export(bpy.context.evaluated_depsgraph_get(), [64, 48], motion=moving)
     return [seen, scene.frame_current, scene.frame_subframe]
+
+
+def _lifted(group, to_points):
+    """Geometry nodes that lift all points by a tenth of the frame's number, as a point cloud if asked to."""
+    tree = bpy.data.node_groups.new(group, "GeometryNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    first, last = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    time, factor = tree.nodes.new("GeometryNodeInputSceneTime"), tree.nodes.new("ShaderNodeMath")
+    factor.operation = "MULTIPLY"
+    factor.inputs[1].default_value = 0.1
+    offset, place = tree.nodes.new("ShaderNodeCombineXYZ"), tree.nodes.new("GeometryNodeSetPosition")
+    tree.links.new(time.outputs["Frame"], factor.inputs[0])
+    tree.links.new(factor.outputs[0], offset.inputs["Z"])
+    tree.links.new(offset.outputs[0], place.inputs["Offset"])
+    source = first.outputs[0]
+    if to_points:
+        node = tree.nodes.new("GeometryNodeMeshToPoints")
+        tree.links.new(source, node.inputs["Mesh"])
+        source = node.outputs[0]
+    tree.links.new(source, place.inputs["Geometry"])
+    tree.links.new(place.outputs[0], last.inputs[0])
+    return tree
+
+
+def shapes():
+    """Motion of the points of every kind of shape: [time, change of each point] by the name of the shape, and fps."""
+    scene = _scene()
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    scene.render.fps = 10
+    seeds = _add("Seeds", _mesh("Seeds"))
+    seeds.modifiers.new("Points", "NODES").node_group = _lifted("ToPoints", True)
+    curves = bpy.data.hair_curves.new("Curves")
+    curves.add_curves([2, 3])
+    for i, point in enumerate(curves.points):
+        point.position = (0.1 * i, 0.0, 0.0)
+    _add("Curves", curves).modifiers.new("Lift", "NODES").node_group = _lifted("Lift", False)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body = "A"
+    _add("Text", text)
+    _keyed(text, "size", [(1, 1.0), (9, 2.0)])
+    flow = _mesh("Flow")
+    velocity = flow.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
+    velocity.data.foreach_set("vector", np.arange(9, dtype=np.float32))
+    _add("Flow", flow)
+    lawn = _add("Lawn", _mesh("Lawn", ((0, 0, 0), (3, 0, 0), (0, 3, 0))))
+    lawn.shape_key_add(name="Basis")
+    key = lawn.shape_key_add(name="Up")
+    for point in key.data:
+        point.co.z += 2.0
+    _keyed(key, "value", [(1, 0.0), (9, 1.0)])
+    lawn.modifiers.new("Grass", "PARTICLE_SYSTEM")
+    grass = lawn.particle_systems[0].settings
+    grass.type, grass.count, grass.hair_length, grass.render_type = "HAIR", 5, 0.5, "PATH"
+    scene.frame_set(4)
+    listener, warnings = _gathered(scene)
+    changes = {}
+    for key, moved in listener.points.items():
+        name, base = listener.shapes[key]
+        changes[name] = [[time, (points - base).tolist()] for time, points in moved]
+    return [changes, warnings]

@@ -56,3 +56,26 @@ def test_what_is_not_blurred_is_told(blender):
 def test_a_stopped_gathering_returns_to_the_frame(blender):
     seen, *frame = blender.run("stopped")[0]
     assert frame == [4, 0.25] and seen[-1] == 4.25 and len(seen) == 2
+
+
+def test_points_of_every_kind_of_shape_move(blender):
+    changes, warnings = blender.run("shapes")[0]
+    assert warnings == []
+    found = {name: {time: np.reshape(change, (-1, 3)) for time, change in moved} for name, moved in changes.items()}
+    assert set(found) == {"PointCloud", "Curves", "Text", "Flow", "Lawn", "Lawn, Grass"}
+    for name, moved in found.items():
+        assert sorted(moved) == pytest.approx([-0.5, 0.5]), name
+    for name, count in (("PointCloud", 3), ("Curves", 5)):
+        for time, change in found[name].items():
+            np.testing.assert_allclose(change, [[0.0, 0.0, 0.1 * time]] * count, atol=1e-5, err_msg=name)
+    # Metres a second at ten frames a second, whatever is keyed.
+    for time, change in found["Flow"].items():
+        np.testing.assert_allclose(change, time / 10.0 * np.arange(9).reshape(3, 3), atol=1e-5)
+    for name in ("Text", "Lawn", "Lawn, Grass"):
+        before, after = (found[name][time] for time in sorted(found[name]))
+        assert np.abs(after - before).max() > 0.05, name
+    lawn = [change[:, 2] for _, change in sorted(found["Lawn"].items())]
+    assert np.ptp(lawn[0]) < 1e-5 and lawn[0][0] < -0.05 and lawn[1][0] > 0.05
+    # Hair goes with what it grows on.
+    for time, change in found["Lawn, Grass"].items():
+        np.testing.assert_allclose(change[:, 2], found["Lawn"][time][0, 2], atol=1e-4)

@@ -130,7 +130,7 @@ class Motion:
             found += indices
             matrices += [x for row in instance.matrix_world for x in row] * len(indices)
             for key, modifier in shapes.get(identity, ()):
-                points = _points(instance, modifier)
+                points = _points(instance, modifier, depsgraph.mode == "RENDER")
                 self._points.setdefault(key, []).append((self._after(share), points))
         for identity in missing:
             # What is not there at this time is where it is at the frame.
@@ -170,12 +170,12 @@ def _times(obj, parent):
     return frozenset(i / pieces for i in range(pieces + 1))
 
 
-def _points(instance, modifier):
+def _points(instance, modifier, render):
     """Points of what is instanced, at the frame that is set."""
     obj = instance.object
     if modifier:
         obj = instance.instance_object if instance.is_instance else obj
-        return particles.points(obj, obj.modifiers[modifier], True).astype(np.float32).reshape(-1)
+        return particles.points(obj, obj.modifiers[modifier], render).astype(np.float32).reshape(-1)
     if obj.type in mesh.WITH_ATTRIBUTES:
         return mesh.positions(obj.data)
     data = obj.to_mesh()
