@@ -549,3 +549,23 @@ def border(folder):
         paths.append(os.path.join(folder, f"{name}.exr"))
         _render(paths[-1])
     return paths
+
+
+def node_wall(folder):
+    """All function nodes by both engines: names of the tiles, how many in a row, and the two pictures."""
+    import node_lab
+
+    names, columns, rows = node_lab.wall()
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = columns * node_lab.TILE, rows * node_lab.TILE
+    scene.render.resolution_percentage = 100
+    cycles = scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.pixel_filter_type, cycles.max_bounces = "BOX", 0
+    scene.penumbra.spp, scene.penumbra.max_bounces = 256, 0
+    paths = []
+    for engine in ("CYCLES", "PENUMBRA"):
+        scene.render.engine = engine
+        paths.append(os.path.join(folder, f"{engine.lower()}.exr"))
+        _render(paths[-1])
+    return [names, columns, node_lab.TILE, paths]
