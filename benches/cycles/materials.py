@@ -37,7 +37,7 @@ ANGLES = (0, 45, 60, 75, 85)
 SHARE, SIGMAS = 0.01, 3.0
 TILE = 8
 """Pixels on each side of a square in the furnace."""
-FURNACE_SAMPLES = 1024
+FURNACE_SAMPLES = 512
 
 
 def material(case):
@@ -204,7 +204,14 @@ def page(furnaces, grid, size, samples, seconds, threads):
     ])
 
 
-KNOWN = ["None."]
+KNOWN = [
+    "- At 85°, what lies beneath a dielectric or a coat: Cycles takes up to 2 % too much off it there. White plastic and "
+    "white lacquer keep all light, so that 1 is exact.",
+    "- Glass seen from its denser side: Cycles loses up to 4 % at grazing angles, Penumbra nothing (IOR 0.7). A ball of "
+    "rough glass is therefore darker in Cycles the more often light bounces within. White ones of Transmission Weight 1 "
+    "in a white furnace should show their disc, 0.664 of a tile; at roughness 0.6 and 1 Cycles shows 0.646 and 0.648, "
+    "Penumbra 0.658 and 0.664.",
+]
 """What the page says of what is in bold."""
 
 
@@ -213,7 +220,7 @@ def main():
     parser.add_argument("--wheel")
     parser.add_argument("--profile", default="release")
     parser.add_argument("--samples", type=int, default=4096)
-    parser.add_argument("--size", type=int, default=48)
+    parser.add_argument("--size", type=int, default=12)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--only", choices=("furnace", "spheres"))
     options = parser.parse_args()

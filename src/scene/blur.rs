@@ -13,8 +13,9 @@ const SQUARE: f32 = 1.0 / 12.0;
 /// Kaplanyan, *Improved Geometric Specular Antialiasing*, I3D 2019.
 const MOST_VARIANCE: f32 = 0.18;
 
-/// How far beyond a primitive its normals are followed, in its own coordinates.
-const MOST_STEP: f32 = 2.0;
+/// How far beyond a primitive its normals are followed, in its own coordinates: farther off, what it says of them is
+/// too much more often than not.
+const MOST_STEP: f32 = 8.0;
 
 /// What widens the highlights of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -233,8 +233,10 @@ mod tests {
         made.set_motion(&[MovedPoints { time: 0.5, positions: &moved }], &mut warnings);
         let desc = made.dressed(&[]);
         assert_eq!((desc.motion.len(), desc.motion[0].time, &desc.motion[0].value), (2, 0.0, &still.points));
-        let lifted: Vec<_> = still.points.iter().map(|p| [p[0], p[1], 0.5]).collect();
-        assert_eq!((desc.motion[1].time, &desc.motion[1].value), (0.5, &lifted));
+        let after = &desc.motion[1];
+        assert_eq!((after.time, after.value.len()), (0.5, still.points.len()));
+        let lifted = |(now, then): (&[f32; 3], &[f32; 3])| now[..2] == then[..2] && (then[2] - 0.5).abs() < 1e-6;
+        assert!(still.points.iter().zip(&after.value).all(lifted), "{:?}", after.value);
         assert_eq!(warnings.len(), 1);
         made.set_motion(&[MovedPoints { time: 0.5, positions: &moved[3..] }], &mut warnings);
         assert!(made.dressed(&[]).motion.is_empty() && warnings.len() == 2);

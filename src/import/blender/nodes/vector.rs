@@ -107,11 +107,7 @@ pub fn transform<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let (from, to) = (space("convert_from"), space("convert_to"));
     let moved = flow.graph.transform(quantity, from, to, value);
     // Normals are unit in every space that they come to.
-    if quantity == Quantity::Normal && from != to {
-        flow.graph.apply(Function::Normalize(3), &[moved])
-    } else {
-        moved
-    }
+    if quantity == Quantity::Normal && from != to { flow.graph.apply(Function::Normalize(3), &[moved]) } else { moved }
 }
 
 /// Vector Curves.
