@@ -175,7 +175,7 @@ def sphere_table(rows, size, samples, threads):
                              f"Cycles {np.round(cycles[0], 5)} ± {np.round(cycles[1], 5)}")
             mark = "**" if bad else ""
             value = case.name.rsplit(" ", 1)[1]
-            off = 100.0 * (ours[0].mean() / max(cycles[0].mean(), 1e-9) - 1.0)
+            off = 100.0 * (ours[0].mean() - cycles[0].mean()) / max(cycles[0].mean(), 1e-9)
             sigma = 100.0 * float(np.hypot(cycles[1].mean(), ours[1].mean()) / max(cycles[0].mean(), 1e-9))
             cells.append(f"{mark}{value}: {off:+.2f} ± {sigma:.2f} %{mark}")
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
