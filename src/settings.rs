@@ -288,6 +288,10 @@ settings! {
         "Light samples at the first hit per sample";
     light_selection: LightSelection = "tree", Kind::Choice(LIGHT_SELECTIONS), "NAME",
         "How one of many lights is chosen: tree (by what it may send to a point), or, with more noise, power or uniform";
+    filter_glossy: f64 = "0", Kind::Float { min: 0.0, max: 10.0 }, "X",
+        "Blur reflections and refractions that are seen through scattering spread wider than this density, as Cycles' Filter Glossy; 0 for none";
+    specular_aa: f64 = "0", Kind::Float { min: 0.0, max: 8.0 }, "PIXELS",
+        "Widen highlights by how much normals vary within so many pixels, against flicker; 0 for none";
     sampler: Pattern = "sobol", Kind::Text, "NAME",
         "Point set that the random decisions are drawn from";
     filter: Filter = "blackman_harris:1.5", Kind::Text, "NAME[:WIDTH]",

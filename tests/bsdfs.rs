@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use penumbra::bsdf::{
     Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Lobe, Microfacets, Sheen, Stretched, Surface, ThinFilm,
-    f0_from_eta, fresnel_dielectric,
+    Widening, f0_from_eta, fresnel_dielectric,
 };
 use penumbra::math::{Frame, Rgb, Vec3};
 use penumbra::sampling::{Dimension, Pattern, Sampler};
@@ -53,18 +53,32 @@ struct Case {
     lossless: bool,
     /// False for a view from within.
     entering: bool,
+    /// What its microfacets are widened by.
+    widening: Widening,
+}
+
+const PLAIN: Widening = Widening { variance: 0.0, least: 0.0 };
+
+/// Blurred as Filter Glossy does it, which loses what scatters more than once between wider facets.
+const fn blurred(case: Case) -> Case {
+    Case { widening: Widening { least: 0.4, ..PLAIN }, lossless: false, ..case }
+}
+
+/// With normals that vary within a pixel.
+const fn uneven(case: Case) -> Case {
+    Case { widening: Widening { variance: 0.1, ..PLAIN }, ..case }
 }
 
 const fn outside(name: &'static str, surface: Surface, lossless: bool) -> Case {
-    Case { name, closure: Closure::Layered(surface), lossless, entering: true }
+    Case { name, closure: Closure::Layered(surface), lossless, entering: true, widening: PLAIN }
 }
 
 const fn inside(name: &'static str, surface: Surface, lossless: bool) -> Case {
-    Case { name, closure: Closure::Layered(surface), lossless, entering: false }
+    Case { name, closure: Closure::Layered(surface), lossless, entering: false, widening: PLAIN }
 }
 
 const fn single(name: &'static str, closure: Closure, lossless: bool) -> Case {
-    Case { name, closure, lossless, entering: true }
+    Case { name, closure, lossless, entering: true, widening: PLAIN }
 }
 
 const CASES: &[Case] = &[
@@ -140,6 +154,20 @@ const CASES: &[Case] = &[
     single("refraction", Closure::Refraction { color: Rgb::WHITE, ior: 1.5, facets: FACETS }, false),
     single("sheen node", Closure::Sheen(Sheen { color: Rgb::WHITE, roughness: 0.3 }), false),
     single("toon", Closure::Toon { color: Rgb::WHITE, size: [0.5, 0.2], glossy: false }, false),
+    blurred(outside("plastic, smooth, blurred", Surface { roughness: 0.0, ..WHITE }, true)),
+    blurred(outside("metal, polished, blurred", Surface { roughness: 0.15, base_color: TEAL, ..METAL }, false)),
+    blurred(outside("metal, matt, blurred", Surface { roughness: 1.0, ..METAL }, true)),
+    blurred(outside("metal, stretched, blurred", Surface { stretched: Some(STRETCHED), ..METAL }, false)),
+    blurred(outside("glass, smooth, blurred", Surface { roughness: 0.0, ..GLASS }, true)),
+    blurred(inside("glass, smooth, inside, blurred", Surface { roughness: 0.0, ..GLASS }, true)),
+    blurred(outside("sheet, smooth, blurred", Surface { roughness: 0.0, thin: true, ..GLASS }, true)),
+    blurred(outside("glass, index matched, blurred", Surface { ior: 1.0, roughness: 0.0, ..GLASS }, true)),
+    blurred(outside("coat, blurred", Surface { coat: Some(COAT), ..WHITE }, true)),
+    uneven(outside("plastic, smooth, uneven", Surface { roughness: 0.0, ..WHITE }, true)),
+    uneven(outside("metal, polished, uneven", Surface { roughness: 0.15, ..METAL }, true)),
+    uneven(outside("metal, stretched, uneven", Surface { stretched: Some(STRETCHED), ..METAL }, false)),
+    uneven(outside("glass, smooth, uneven", Surface { roughness: 0.0, ..GLASS }, true)),
+    uneven(outside("coat, smooth, uneven", Surface { coat: Some(Coat { roughness: 0.0, ..COAT }), ..WHITE }, true)),
     single("toon, glossy", Closure::Toon { color: Rgb::WHITE, size: [0.2, 0.0], glossy: true }, false),
 ];
 
@@ -147,7 +175,7 @@ const GOLD: Conductor = Conductor { eta: Rgb::new(0.183, 0.422, 1.373), k: Rgb::
 
 impl Case {
     fn bsdf(&self, wo: Vec3) -> Bsdf {
-        seen(&self.closure, wo, self.entering)
+        seen(&self.closure, wo, self.entering, self.widening)
     }
 
     fn is_stretched(&self) -> bool {
@@ -160,6 +188,10 @@ impl Case {
 
     /// True where there are no tables for its albedo, only estimates.
     fn is_estimated(&self) -> bool {
+        // What blurring loses is in no table, as in Cycles.
+        if self.widening.least > 0.0 {
+            return true;
+        }
         match &self.closure {
             Closure::Layered(surface) => surface.film.is_some() || surface.stretched.is_some(),
             Closure::Metal { film, facets, .. } => film.is_some() || facets.stretched.is_some(),
@@ -183,8 +215,9 @@ impl Case {
 }
 
 /// `closure` alone, seen from `wo`.
-fn seen(closure: &Closure, wo: Vec3, entering: bool) -> Bsdf {
+fn seen(closure: &Closure, wo: Vec3, entering: bool, widening: Widening) -> Bsdf {
     let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+    builder.set_widening(widening);
     builder.add(Rgb::WHITE, closure);
     builder.finish()
 }
@@ -311,7 +344,11 @@ fn energy_is_kept_and_never_made() {
         for closure in [Some(case.closure), narrow].into_iter().flatten() {
             for degrees in [0.0, 20.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.5] {
                 for above in [true, false] {
-                    check_energy(case, &seen(&closure, view(degrees, 0.3, above), case.entering), degrees);
+                    check_energy(
+                        case,
+                        &seen(&closure, view(degrees, 0.3, above), case.entering, case.widening),
+                        degrees,
+                    );
                 }
             }
         }

@@ -6,7 +6,7 @@ import bpy
 import penumbra
 
 from . import passes, properties
-from .export import Exporter, libraries
+from .export import Exporter, libraries, motion
 from .viewport import Viewport
 
 # Samples per pixel of a preview in the Properties editor, how long it may take, and how often it is shown on the way.
@@ -53,7 +53,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             raise ValueError("the scene has no camera: add one, or make one the scene's camera")
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
-        exporter.export(depsgraph, size, self.camera_override)
+        exporter.export(depsgraph, size, self.camera_override, motion=self._motion(depsgraph))
         clashing = [
             f'the shader AOV "{name}" is left out: another pass has its name' for name in passes.clashing(view_layer)
         ]
@@ -74,6 +74,13 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         )
         self._tell(picture.warnings)
         self._fill(view_layer, picture)
+
+    def _motion(self, depsgraph):
+        """What gathers the motion of a picture with motion blur; None for one without."""
+        scene = depsgraph.scene_eval
+        if self.is_preview or not motion.is_on(scene, depsgraph.view_layer_eval):
+            return None
+        return motion.Motion(scene, self.frame_set, self.test_break)
 
     def _settings(self, scene, view_layer):
         """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""

@@ -26,7 +26,7 @@ _OF_CYCLES = {
     "CYCLES_WORLD_PT_preview", "CYCLES_WORLD_PT_surface", "CYCLES_WORLD_PT_ray_visibility", "CYCLES_WORLD_PT_settings",
     "CYCLES_WORLD_PT_settings_light_group",
     "OBJECT_PT_shadow_terminator", "CYCLES_OBJECT_PT_shading_shadow_terminator",
-    "CYCLES_OBJECT_PT_shading", "CYCLES_OBJECT_PT_lightgroup", "CYCLES_OBJECT_PT_light_linking",
+    "CYCLES_OBJECT_PT_motion_blur", "CYCLES_OBJECT_PT_shading", "CYCLES_OBJECT_PT_lightgroup", "CYCLES_OBJECT_PT_light_linking",
     "CYCLES_OBJECT_PT_shadow_linking", "CYCLES_OBJECT_PT_visibility", "CYCLES_OBJECT_PT_visibility_ray_visibility",
     "CYCLES_CAMERA_PT_dof", "CYCLES_CAMERA_PT_dof_aperture", "CYCLES_CAMERA_PT_lens_custom_parameters",
 }

@@ -76,6 +76,7 @@ class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
         row.prop(own, "seed")
         row.prop(own, "use_animated_seed", text="", icon="TIME")
         layout.prop(own, "sampler", text="Pattern")
+        layout.prop(own, "specular_aa", text="Specular Anti-Aliasing")
         layout.prop(own, "effects")
 
 
@@ -90,6 +91,9 @@ class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
         column = layout.column()
         column.active = own.integrator == "path"
         column.prop(own, "max_bounces")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            column.prop(cycles, "blur_glossy")
 
 
 class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
@@ -102,6 +106,22 @@ class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
         layout.prop(scene.penumbra, "ao_samples", text="Samples")
         if scene.world is not None:
             layout.prop(scene.world.light_settings, "distance")
+
+
+class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        layout, render = self._split(), context.scene.render
+        layout.active = render.use_motion_blur
+        column = layout.column()
+        column.prop(render, "motion_blur_position", text="Position")
+        column.prop(render, "motion_blur_shutter")
 
 
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
@@ -228,6 +248,7 @@ PANELS = (
     PENUMBRA_PT_sampling_advanced,
     PENUMBRA_PT_light_paths,
     PENUMBRA_PT_ambient_occlusion,
+    PENUMBRA_PT_motion_blur,
     PENUMBRA_PT_film,
     PENUMBRA_PT_performance,
     PENUMBRA_PT_passes,

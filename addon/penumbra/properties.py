@@ -7,7 +7,8 @@ from . import passes
 
 # What Blender has properties of its own for.
 _BLENDERS = {
-    "passes", "threads", "half", "filter", "shadow_terminator_geometry_offset", "shadow_terminator_shading_offset",
+    "passes", "threads", "half", "filter", "filter_glossy", "motion_blur", "shadow_terminator_geometry_offset",
+    "shadow_terminator_shading_offset",
 }
 _UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
 
@@ -81,6 +82,7 @@ def settings(scene, view_layer):
     kind = getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS").lower()
     width = getattr(cycles, "filter_width", 1.5)
     result["filter"] = "box:0.5" if kind == "box" else f"{kind}:{width}"
+    result["filter_glossy"] = getattr(cycles, "blur_glossy", 0.0)
     world = scene.world
     if world is not None and "ao_distance" not in result:
         result["ao_distance"] = world.light_settings.distance

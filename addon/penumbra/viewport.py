@@ -103,7 +103,7 @@ def _view(context, depsgraph):
     scene = depsgraph.scene
     through = scene.camera if data.view_perspective == "CAMERA" else None
     if through is not None and through.type == "CAMERA":
-        own = camera.camera(through.evaluated_get(depsgraph), scene)
+        own = camera.camera(through.evaluated_get(depsgraph))
         view["orthographic"] = own["type"] == "ORTHO"
         view["clip_start"], view["clip_end"] = own["clip_start"], own["clip_end"]
         if "dof" in own:

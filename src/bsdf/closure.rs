@@ -15,7 +15,7 @@ use super::thin_film::{Base, Film, THINNEST};
 use super::toon::Toon;
 use super::translucent::Translucent;
 use super::{Conductor, surface::Sheen};
-use crate::math::{Rgb, sqr};
+use crate::math::{Frame, Rgb, sqr};
 
 /// Microfacets of a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,14 +167,6 @@ pub(super) fn unit(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
-/// A microfacet distribution, and the frame it is stretched along.
-pub(super) fn facets(roughness: f32, stretched: &Option<Stretched>) -> (Option<Ggx>, Option<crate::math::Frame>) {
-    match stretched {
-        Some(stretched) => (Ggx::new(stretched.alpha), Some(stretched.frame)),
-        None => (Ggx::new([sqr(unit(roughness)); 2]), None),
-    }
-}
-
 /// `base` beneath `film`, if there is one.
 pub(super) fn beneath(film: &Option<ThinFilm>, base: Base) -> Option<Film> {
     film.as_ref()
@@ -222,6 +214,14 @@ impl Builder {
         }
     }
 
+    /// A microfacet distribution, and the frame it is stretched along.
+    pub(super) fn facets(&self, roughness: f32, stretched: &Option<Stretched>) -> (Option<Ggx>, Option<Frame>) {
+        match stretched {
+            Some(stretched) => (self.ggx(stretched.alpha), Some(stretched.frame)),
+            None => (self.ggx([sqr(unit(roughness)); 2]), None),
+        }
+    }
+
     pub(super) fn add_diffuse(&mut self, weight: Rgb, color: Rgb, roughness: f32, multiscatter: bool) {
         if unit(roughness) < 1e-5 {
             self.push(weight * color, Class::Diffuse, None, Lambert);
@@ -237,7 +237,7 @@ impl Builder {
         fresnel: Fresnel,
         Microfacets { roughness, stretched, multiscatter }: &Microfacets,
     ) {
-        let (ggx, frame) = facets(*roughness, stretched);
+        let (ggx, frame) = self.facets(*roughness, stretched);
         let frame = self.frame(frame);
         let lobe = Reflection::new(ggx, fresnel, *multiscatter, self.wo(frame));
         self.push(color, Class::Interface, frame, lobe);
@@ -255,7 +255,7 @@ impl Builder {
             tints: [Rgb::WHITE; 2],
             thin: false,
         };
-        let ggx = Ggx::new([sqr(unit(facets.roughness)); 2]);
+        let ggx = self.ggx([sqr(unit(facets.roughness)); 2]);
         self.push(
             color,
             Class::Interface,

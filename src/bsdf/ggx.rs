@@ -37,6 +37,12 @@ impl Ggx {
         (x.max(y) >= MIN_ALPHA).then(|| Self { x: x.max(MIN_ALPHA), y: y.max(MIN_ALPHA) })
     }
 
+    /// At least as wide as `least` in every direction.
+    pub fn widened(this: Option<Self>, least: f32) -> Option<Self> {
+        let Self { x, y } = this.unwrap_or(Self { x: 0.0, y: 0.0 });
+        Self::new([x.max(least), y.max(least)])
+    }
+
     /// The width of a round distribution that is about as rough.
     pub fn mean(self) -> f32 {
         (self.x * self.y).sqrt()

@@ -12,6 +12,9 @@ use crate::math::{Rgb, Vec3};
 /// Where α |η − 1| is smaller, the spread of refraction can't be told from none.
 const MIN_BEND: f32 = 2e-5;
 
+/// Least share of reflection or passage where it is only estimated.
+const LEAST_SHARE: f32 = 0.02;
+
 /// What a boundary is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boundary {
@@ -52,6 +55,18 @@ enum Passage {
     RoughBent,
 }
 
+impl Passage {
+    fn of(ggx: Option<Ggx>, boundary: &Boundary) -> Self {
+        match ggx {
+            None if boundary.thin => Self::Straight,
+            None => Self::Bent,
+            Some(_) if boundary.thin => Self::RoughThin,
+            Some(ggx) if ggx.mean() * (boundary.fresnel.eta - 1.0).abs() < MIN_BEND => Self::Straight,
+            Some(_) => Self::RoughBent,
+        }
+    }
+}
+
 impl Boundary {
     /// Shares of reflection and of passage at a microfacet, with their tints.
     #[inline]
@@ -80,16 +95,22 @@ impl Boundary {
 impl Glass {
     /// Seen from `wo`. `multiscatter` gives back what scatters between microfacets.
     pub fn new(ggx: Option<Ggx>, boundary: Boundary, multiscatter: bool, wo: Vec3) -> Self {
-        let eta = boundary.fresnel.eta;
-        let passage = match ggx {
-            None if boundary.thin => Passage::Straight,
-            None => Passage::Bent,
-            Some(_) if boundary.thin => Passage::RoughThin,
-            Some(ggx) if ggx.mean() * (eta - 1.0).abs() < MIN_BEND => Passage::Straight,
-            Some(_) => Passage::RoughBent,
-        };
+        let passage = Passage::of(ggx, &boundary);
         let (factor, albedo) = energy(ggx, &boundary, passage, multiscatter, wo.z.min(1.0));
         Self { ggx, boundary, passage, factor, albedo }
+    }
+
+    /// See [`super::lobe::AnyLobe::widen`].
+    pub fn widen(&mut self, least: f32) {
+        self.ggx = Ggx::widened(self.ggx, least);
+        self.passage = Passage::of(self.ggx, &self.boundary);
+        if self.boundary.reflects {
+            // Facets that lean let some of either through where a smooth boundary has none.
+            let [reflection, transmission] = self.boundary.tints;
+            let least = |albedo: Rgb, tint: Rgb| albedo.zip(tint, |albedo, tint| albedo.max(LEAST_SHARE * tint));
+            self.albedo.above = least(self.albedo.above, reflection);
+            self.albedo.below = least(self.albedo.below, transmission);
+        }
     }
 
     /// Probability of reflection over passage at a microfacet.
@@ -131,7 +152,7 @@ fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter:
         Sides { above: Rgb::BLACK, below: transmission * passed }
     } else if boundary.film.is_some() {
         // No tables for films: as a smooth boundary splits it, a little of either where that has none.
-        let [r, t] = boundary.split(cos).map(|share| share.map(|c| c.max(0.02)));
+        let [r, t] = boundary.split(cos).map(|share| share.map(|c| c.max(LEAST_SHARE)));
         Sides { above: r * sum * factor, below: t * sum * factor }
     } else {
         Sides { above: reflected * factor * reflection, below: passed * factor * transmission }

@@ -131,6 +131,18 @@ macro_rules! lobes {
     };
 }
 
+impl AnyLobe {
+    /// Makes microfacets at least `least` wide; what they keep of light stays what it is.
+    #[cold]
+    pub fn widen(&mut self, least: f32) {
+        match self {
+            Self::Reflection(lobe) => lobe.widen(least),
+            Self::Glass(lobe) => lobe.widen(least),
+            _ => {}
+        }
+    }
+}
+
 lobes! {
     Lambert(Lambert),
     OrenNayar(OrenNayar),

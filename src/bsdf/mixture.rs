@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::ggx::Ggx;
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::softening::Softening;
 use super::surface::ThinFilm;
@@ -66,6 +67,15 @@ pub struct Bsdf {
     softening: Option<Softening>,
 }
 
+/// What makes microfacets wider than the material says; nothing by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Widening {
+    /// Added to the squares of their widths, as if the material said so: of normals that vary within a pixel.
+    pub variance: f32,
+    /// They are at least so wide, and keep as much light as they would have without: Cycles' Filter Glossy.
+    pub least: f32,
+}
+
 /// A [`Bsdf`] in the making.
 #[derive(Debug)]
 pub struct Builder {
@@ -73,6 +83,7 @@ pub struct Builder {
     entering: bool,
     /// Frame of what is added next, where it names none.
     base: FrameId,
+    widening: Widening,
 }
 
 impl Builder {
@@ -84,7 +95,7 @@ impl Builder {
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
         let ng = Vec3::new(ng.x, ng.y, ng.z * side);
         let bsdf = Bsdf { terms: SmallVec::new(), frames: SmallVec::new(), wo, side, ng, ns: ng, softening: None };
-        Self { bsdf, entering, base: None }
+        Self { bsdf, entering, base: None, widening: Widening::default() }
     }
 
     /// The geometry stands for a smooth surface of normal `ns`, on the side of `wo`: what is lit and what is not goes by
@@ -100,6 +111,18 @@ impl Builder {
 
     pub(super) fn entering(&self) -> bool {
         self.entering
+    }
+
+    /// The microfacets of what is added from now on are made wider.
+    pub fn set_widening(&mut self, widening: Widening) {
+        self.widening = widening;
+    }
+
+    /// Microfacets of these widths, which count up to 1, made wider by normals that vary; `None` for a mirror.
+    pub(super) fn ggx(&self, widths: [f32; 2]) -> Option<Ggx> {
+        let Widening { variance, .. } = self.widening;
+        let wider = |alpha: f32| if variance > 0.0 { (alpha * alpha + variance).sqrt() } else { alpha };
+        Ggx::new(widths.map(|alpha| wider(alpha).min(1.0)))
     }
 
     /// What is added from now on has the normal of `frame`, given within the surface's own; with `None` that of
@@ -135,7 +158,11 @@ impl Builder {
     pub(super) fn push(&mut self, color: Rgb, class: Class, frame: FrameId, lobe: impl Into<AnyLobe>) {
         let color = color.map(|c| c.max(0.0));
         if color.max_component() > 0.0 {
-            self.bsdf.terms.push(Term { lobe: lobe.into(), color, pick: 0.0, class, frame: frame.or(self.base) });
+            let mut lobe: AnyLobe = lobe.into();
+            if self.widening.least > 0.0 {
+                lobe.widen(self.widening.least);
+            }
+            self.bsdf.terms.push(Term { lobe, color, pick: 0.0, class, frame: frame.or(self.base) });
         }
     }
 

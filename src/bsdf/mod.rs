@@ -37,7 +37,7 @@ pub use closure::{Closure, Microfacets};
 pub use conductor::Conductor;
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
 pub use medium::Medium;
-pub use mixture::{Bsdf, Builder};
+pub use mixture::{Bsdf, Builder, Widening};
 pub use profile::Profile;
 pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
 pub use softening::Softening;

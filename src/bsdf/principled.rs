@@ -2,9 +2,8 @@
 //! MaterialX's standard_surface and open_pbr_surface: sheen over coat over metal over glass over the dielectric's
 //! reflection over diffuse light, what is below scaled by what the layers above leave.
 
-use super::closure::{beneath, facets, unit};
+use super::closure::{beneath, unit};
 use super::fresnel::{Dielectric, Metal, f0_from_eta};
-use super::ggx::Ggx;
 use super::glass::{Boundary, Glass};
 use super::lobe::Scatter;
 use super::mixture::{Builder, Class};
@@ -96,8 +95,9 @@ fn add_coat(builder: &mut Builder, weight: Rgb, coat: &Coat) -> Rgb {
     let mut below = 1.0;
     if ior > 1.0 {
         let fresnel = Dielectric::new(ior, Rgb::splat(f0_from_eta(ior)), 1.0);
-        let ggx = Ggx::new([sqr(unit(coat.roughness)); 2]);
-        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), false, wo);
+        let ggx = builder.ggx([sqr(unit(coat.roughness)); 2]);
+        // Cycles' coats keep what scatters more than once, whatever the distribution.
+        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), true, wo);
         below = left(lobe.albedo().above * share);
         builder.push(weight * share, Class::Interface, frame, lobe);
     }
@@ -115,7 +115,7 @@ fn add_metal(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb) {
 
 /// Reflection at the microfacets of the base; what it leaves.
 fn add_facets(builder: &mut Builder, weight: Rgb, surface: &Surface, fresnel: Fresnel) -> f32 {
-    let (ggx, frame) = facets(surface.roughness, &surface.stretched);
+    let (ggx, frame) = builder.facets(surface.roughness, &surface.stretched);
     let frame = builder.frame(frame);
     let lobe = Reflection::new(ggx, fresnel, surface.multiscatter, builder.wo(frame));
     let left = left(lobe.albedo().above);
@@ -134,7 +134,7 @@ fn add_glass(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb, i
         tints: [Rgb::WHITE, if surface.thin { base } else { base.map(f32::sqrt) }],
         thin: surface.thin,
     };
-    let ggx = Ggx::new([sqr(unit(surface.roughness)); 2]);
+    let ggx = builder.ggx([sqr(unit(surface.roughness)); 2]);
     let lobe = Glass::new(ggx, boundary, surface.multiscatter, builder.wo(None));
     builder.push(weight, Class::Interface, None, lobe);
 }

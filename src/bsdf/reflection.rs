@@ -103,6 +103,11 @@ impl Reflection {
         let albedo = factor * fresnel.albedo(cos, energy, plain);
         Self { ggx, fresnel, factor, albedo }
     }
+
+    /// See [`super::lobe::AnyLobe::widen`].
+    pub fn widen(&mut self, least: f32) {
+        self.ggx = Ggx::widened(self.ggx, least);
+    }
 }
 
 impl Scatter for Reflection {

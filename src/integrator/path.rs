@@ -16,7 +16,7 @@ use crate::film::PixelSample;
 use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Coverage, Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
+use crate::scene::{Blur, Coverage, Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
 use crate::settings::Settings;
 
 /// Scatterings before roulette begins.
@@ -47,6 +47,8 @@ struct Path {
     media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
+    /// Density of the least likely direction taken so far, deltas left out.
+    min_pdf: f32,
     /// The last scattering; `None` for rays from the camera.
     last: Option<Scattering>,
     /// What graphs may ask of it, where they do.
@@ -71,6 +73,7 @@ impl Path {
             diffuse: false,
             media: Media::default(),
             vertex: 0,
+            min_pdf: f32::INFINITY,
             last: None,
             state: PathState::CAMERA,
             start: ray.o,
@@ -132,7 +135,7 @@ pub fn trace(
             break;
         }
         let frame = scene.shading_frame(&it);
-        let bsdf = scene.bsdf(&it, &frame, path.share);
+        let bsdf = scene.bsdf(&it, &frame, path.share, Blur::of_path(settings, path.min_pdf));
         let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
         if path.scatterings == 0 {
             // Of a catcher the camera sees no light, but what it is.
@@ -399,6 +402,7 @@ fn scatter(
     path.travelled = 0.0;
     if !scattered.delta {
         // A sample stands for the solid angle 1/pdf; textures seen by it need no finer detail.
+        path.min_pdf = path.min_pdf.min(scattered.pdf);
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
     if scene.effects.light_path {

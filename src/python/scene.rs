@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::exception;
 use crate::desc::SceneDesc;
 use crate::error::{Result, Warnings};
-use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays};
+use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints};
 
 /// A scene in Blender's terms: one document and the arrays of its meshes. The add-on fills it; pieces
 /// that are set again replace the old ones.
@@ -101,8 +101,8 @@ impl Scene {
 
     /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the
     /// index behind its last point); points that stand alone where `ends` is empty. Between its points a strand is
-    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))].
-    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new()))]
+    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))]; `moving` where its motion will follow.
+    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new(), moving=false))]
     fn set_rounds(
         &self,
         key: u64,
@@ -112,12 +112,35 @@ impl Scene {
         ends: PyReadonlyArray1<'_, u32>,
         smooth: bool,
         uvs: Vec<Layer<'_>>,
+        moving: bool,
     ) -> PyResult<()> {
         let ends = ends.as_slice().map_err(|_| contiguous())?;
         let (positions, radii) = (floats(&positions)?, floats(&radii)?);
-        let ends = Ends { points: ends, smooth };
+        let ends = Ends { points: ends, smooth, moving };
         let uvs = layers(&uvs)?;
         self.lock().set_rounds(key, name, positions, radii, ends, &uvs).map_err(|error| exception(&error))
+    }
+
+    /// Takes in where the points of the shape `key` are at other times of the shutter: [(frames after the frame,
+    /// positions (n, 3))].
+    fn set_shape_motion(&self, py: Python<'_>, key: u64, moved: Vec<(f64, Floats<'_>)>) -> PyResult<()> {
+        let moved = moved.iter().map(|(time, positions)| Ok((*time, floats(positions)?)));
+        let moved = moved.map(|at| at.map(|(time, positions)| MovedPoints { time, positions }));
+        let moved = moved.collect::<PyResult<Vec<_>>>()?;
+        py.detach(|| self.lock().set_shape_motion(key, &moved));
+        Ok(())
+    }
+
+    /// Takes in where instances (uint32, indices of those of `set_instances`) are so many frames after the frame:
+    /// matrices (float32, 16 per instance, by rows).
+    fn add_instance_motion(
+        &self,
+        time: f64,
+        instances: PyReadonlyArray1<'_, u32>,
+        matrices: Floats<'_>,
+    ) -> PyResult<()> {
+        let instances = instances.as_slice().map_err(|_| contiguous())?;
+        self.lock().add_instance_motion(time, instances, floats(&matrices)?).map_err(|error| exception(&error))
     }
 
     /// Forgets the shape `key`.

@@ -3,6 +3,7 @@
 
 mod aovs;
 mod asked;
+mod blur;
 mod effects;
 mod framing;
 mod ids;
@@ -19,6 +20,7 @@ mod surroundings;
 mod terminator;
 mod trace;
 
+pub use blur::Blur;
 pub use effects::Effects;
 pub use ids::Ids;
 pub use instance::{Instance, mask};

@@ -1,5 +1,6 @@
 //! What scatters at a point: the parts of its material evaluated, in its shading frame.
 
+use super::blur::Blur;
 use super::material::{Lookups, NormalInput, Part, ScalarInput};
 use super::{Interaction, Scene};
 use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Softening, Stretched};
@@ -43,10 +44,12 @@ pub struct Anisotropy {
 }
 
 impl Scene {
-    /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it.
-    pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32) -> Bsdf {
+    /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it,
+    /// `blur` what its highlights are widened by.
+    pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32, blur: Blur) -> Bsdf {
         let material = self.material(it);
         let mut builder = self.builder(it, frame);
+        let widening = self.widening(it, blur, |it| self.shading_frame(it).n);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
         for part in &material.parts {
@@ -63,6 +66,12 @@ impl Scene {
             }
             let normal = part.bends.is_some().then(|| self.bend(it, frame, part, &lookups, &mut closure)).flatten();
             builder.set_normal(normal);
+            builder.set_widening(match part.bends.as_ref().and_then(|bends| bends.normal) {
+                Some(source) if blur != Blur::default() => {
+                    self.widening(it, blur, |it| self.normal_of_part(it, frame, &source))
+                }
+                _ => widening,
+            });
             builder.add(Rgb::splat(lookups.scalar(&part.weight).max(0.0) * share), &closure);
         }
         builder.finish()
@@ -129,6 +138,14 @@ impl Scene {
             _ => {}
         }
         normal
+    }
+
+    /// A part's own normal at a place where nothing else of it is asked for.
+    #[cold]
+    fn normal_of_part(&self, it: &Interaction, frame: &Frame, source: &NormalSource) -> Vec3 {
+        let mut values = None;
+        let program = self.material(it).programs.as_ref().and_then(|programs| programs.bends.as_ref());
+        self.own_normal(it, frame, source, self.run(it, program, &mut values))
     }
 
     /// A normal of its own in world space, on the side of `wo`.

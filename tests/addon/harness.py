@@ -2,7 +2,7 @@
 
     python harness.py JOB ANSWER.json [ARGUMENT...]
 
-JOB is a function of jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
+JOB is a function of jobs.py or motion_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
 """
 
 import json
@@ -21,10 +21,11 @@ def main():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon_utils.enable(EXTENSION)
     import jobs
+    import motion_jobs
 
     answer = {}
     try:
-        answer["result"] = getattr(jobs, job)(*arguments)
+        answer["result"] = getattr(motion_jobs if hasattr(motion_jobs, job) else jobs, job)(*arguments)
     except Exception as error:
         answer["error"] = f"{type(error).__name__}: {error}"
         answer["traceback"] = traceback.format_exc()

@@ -115,7 +115,8 @@ def side_by_side(name, folder, spp=256, size=64):
         layer.penumbra.use_pass_shadow = True
     cycles = scene.cycles
     cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = int(spp), False, False
-    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, 0.0
+    # What a scene says of the filter itself counts.
+    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, scene.get("blur_glossy", 0.0)
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
     cycles.pixel_filter_type = "BOX"
     scene.penumbra.spp, scene.penumbra.max_bounces = int(spp), 4
@@ -185,7 +186,8 @@ def through_the_doors(name, folder):
     scene = bpy.context.scene
     scene.render.engine = "PENUMBRA"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 48, 100
-    scene.cycles.pixel_filter_type = "BOX"
+    # Files have no place for Filter Glossy.
+    scene.cycles.pixel_filter_type, scene.cycles.blur_glossy = "BOX", 0.0
     scene.penumbra.spp, scene.penumbra.max_bounces = 128, 4
     picture = os.path.join(folder, "f12.exr")
     _render(picture)
@@ -543,3 +545,23 @@ def border(folder):
         paths.append(os.path.join(folder, f"{name}.exr"))
         _render(paths[-1])
     return paths
+
+
+def node_wall(folder):
+    """All function nodes by both engines: names of the tiles, how many in a row, and the two pictures."""
+    import node_lab
+
+    names, columns, rows = node_lab.wall()
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = columns * node_lab.TILE, rows * node_lab.TILE
+    scene.render.resolution_percentage = 100
+    cycles = scene.cycles
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.pixel_filter_type, cycles.max_bounces = "BOX", 0
+    scene.penumbra.spp, scene.penumbra.max_bounces = 256, 0
+    paths = []
+    for engine in ("CYCLES", "PENUMBRA"):
+        scene.render.engine = engine
+        paths.append(os.path.join(folder, f"{engine.lower()}.exr"))
+        _render(paths[-1])
+    return [names, columns, node_lab.TILE, paths]

@@ -708,3 +708,19 @@ def bumpy():
     _coarse_balls(matter)
     lamp("SUN", rotation=(0.2, 1.2, 0.0), energy=3.0, angle=0.02)
     world(0.1)
+
+
+def filter_glossy():
+    """Caustics of a mirror, of glass and of rough metal beside a diffuse floor, blurred as much as Cycles does it."""
+    room(material("Plain", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8, 1.0)))
+    shiny = (material("Mirror", Base_Color=(0.9, 0.9, 0.9, 1.0), Metallic=1.0, Roughness=0.0),
+             material("Glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.5),
+             material("Steel", Base_Color=(0.7, 0.8, 0.9, 1.0), Metallic=1.0, Roughness=0.3),
+             material("Lacquer", Base_Color=(0.6, 0.1, 0.1, 1.0), Roughness=0.1, Coat_Weight=1.0))
+    for i, one in enumerate(shiny):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5, location=(1.3 * i - 2.0, -1.3, 0.6))
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(one)
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=0.5)
+    world(0.1)
+    bpy.context.scene["blur_glossy"] = 1.0

@@ -1,5 +1,6 @@
 """From Blender's evaluated scene to what the engine's Scene takes."""
 
+from . import motion
 from .scene import Exporter
 
-__all__ = ["Exporter"]
+__all__ = ["Exporter", "motion"]

@@ -1,19 +1,26 @@
 """The camera and what of the scene's settings frames the picture."""
 
 
-def camera(obj, scene, matrix=None):
-    """The camera object `obj`, or None for none; `matrix` replaces its own (motion, stereo)."""
+_PROJECTION = ("lens", "sensor_width", "sensor_height", "sensor_fit", "shift_x", "shift_y", "clip_start", "clip_end",
+               "ortho_scale")
+
+
+def projection(obj):
+    """How the camera object `obj` projects: names and values."""
+    return {name: getattr(obj.data, name) for name in _PROJECTION}
+
+
+def camera(obj):
+    """The camera object `obj`, or None for none."""
     if obj is None or obj.type != "CAMERA":
         return None
     data = obj.data
     result = {
         "name": obj.name,
-        "matrix": [list(map(float, row)) for row in (matrix or obj.matrix_world)],
+        "matrix": [list(map(float, row)) for row in obj.matrix_world],
         "type": data.type,
+        **projection(obj),
     }
-    for name in ("lens", "sensor_width", "sensor_height", "sensor_fit", "shift_x", "shift_y", "clip_start",
-                 "clip_end", "ortho_scale"):
-        result[name] = getattr(data, name)
     dof = data.dof
     if dof.use_dof:
         result["dof"] = {

@@ -9,14 +9,22 @@ def _array(collection, attribute, width, dtype):
     return values
 
 
+# Types of objects whose data has a position and more for each of its points.
+WITH_ATTRIBUTES = {"MESH", "CURVES", "POINTCLOUD"}
+
+
+def positions(data):
+    """Three numbers for each point of a mesh, of curves or of a point cloud."""
+    attribute = data.attributes.get("position") if data is not None else None
+    return np.empty(0, np.float32) if attribute is None else _array(attribute.data, "vector", 3, np.float32)
+
+
 def hand_over(scene, key, mesh):
     """Gives the evaluated mesh to the engine's scene as mesh `key`."""
     mesh.calc_loop_triangles()
     triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
     arrays = {
-        "positions": _array(mesh.attributes["position"].data, "vector", 3, np.float32)
-        if "position" in mesh.attributes
-        else np.empty(0, np.float32),
+        "positions": positions(mesh),
         "corner_verts": _corner_verts(mesh),
         "triangles": triangles,
     }

@@ -13,29 +13,34 @@ def systems(obj, render):
             yield modifier, settings.material - 1
 
 
-def hand_over(scene, key, name, obj, modifier, render):
+def hand_over(scene, key, name, obj, modifier, render, moving):
     """Gives the strands of a system of the evaluated `obj` to the engine's scene as shape `key`; False for none."""
+    strands = points(obj, modifier, render)
+    count, steps = strands.shape[:2]
+    if count == 0:
+        return False
+    radii = _radii(modifier.particle_system.settings, strands)
+    ends = np.arange(1, count + 1, dtype=np.uint32) * np.uint32(steps)
+    scene.set_rounds(key, name, strands.astype(np.float32).reshape(-1), radii.astype(np.float32).reshape(-1), ends, True,
+                     _uvs(obj, modifier, *_strands(modifier.particle_system, render)), moving)
+    return True
+
+
+def points(obj, modifier, render):
+    """Points of the strands of a system of the evaluated `obj`, in its space: (strands, points of each, 3)."""
     system = modifier.particle_system
     settings = system.settings
     first, last = _strands(system, render)
     steps = 1 + 2 ** (settings.render_step if render else settings.display_step)
     if settings.kink == "SPIRAL":
         steps += settings.kink_extra_steps
-    count = last - first
-    if count <= 0:
-        return False
     # Blender answers one key at a time; all that follows is arrays.
     ask = system.co_hair
     flat = [x for strand in range(first, last) for step in range(steps)
             for x in ask(obj, particle_no=strand, step=step)]
     world = np.asarray(flat, np.float64).reshape(-1, 3)
     inverse = np.asarray(obj.matrix_world.inverted_safe(), np.float64)
-    points = (world @ inverse[:3, :3].T + inverse[:3, 3]).reshape(count, steps, 3)
-    radii = _radii(settings, points)
-    ends = np.arange(1, count + 1, dtype=np.uint32) * np.uint32(steps)
-    scene.set_rounds(key, name, points.astype(np.float32).reshape(-1), radii.astype(np.float32).reshape(-1), ends, True,
-                     _uvs(obj, modifier, first, last))
-    return True
+    return (world @ inverse[:3, :3].T + inverse[:3, 3]).reshape(-1, steps, 3)
 
 
 def _uvs(obj, modifier, first, last):

@@ -2,18 +2,17 @@
 
 import numpy as np
 
+from . import mesh
+
 # What Blender takes for the radius of a point that has none.
 _RADIUS = 0.01
 
 
-def hand_over(scene, key, data):
+def hand_over(scene, key, data, moving):
     """Gives curves or points to the engine's scene as shape `key`; False where there are none."""
     count = len(data.points)
-    position = data.attributes.get("position")
-    if count == 0 or position is None:
+    if count == 0 or data.attributes.get("position") is None:
         return False
-    positions = np.empty(count * 3, np.float32)
-    position.data.foreach_get("vector", positions)
     radii = np.full(count, _RADIUS, np.float32)
     radius = data.attributes.get("radius")
     if radius is not None:
@@ -23,5 +22,5 @@ def hand_over(scene, key, data):
         offsets = np.empty(len(data.curve_offset_data), np.int32)
         data.curve_offset_data.foreach_get("value", offsets)
         ends = offsets[1:].astype(np.uint32)
-    scene.set_rounds(key, data.name, positions, radii, ends, True)
+    scene.set_rounds(key, data.name, mesh.positions(data), radii, ends, True, moving=moving)
     return True

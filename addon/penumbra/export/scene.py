@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import passes
 from . import camera, images, lights, mesh, nodes, particles, rounds
+from .motion import identity_of
 
 # Types of objects that evaluate to a mesh.
 _MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -61,8 +62,12 @@ class Exporter:
             # A group is part of any number of materials.
             self._known_materials.clear()
 
-    def export(self, depsgraph, size, camera_object=None, space=None):
-        """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows."""
+    def export(self, depsgraph, size, camera_object=None, space=None, motion=None):
+        """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows.
+
+        `motion` gathers what moves while the shutter is open.
+        """
+        self._motion = motion
         self._layer = depsgraph.view_layer
         self._render = depsgraph.mode == "RENDER"
         self._materials, self._material_index = [], {}
@@ -70,7 +75,9 @@ class Exporter:
         self._lights = []
         self._links = []
         self._used = set()
-        of_instance, matrices, random_ids = [], [], []
+        # Names of the modifiers whose hair is a shape.
+        self._modifiers = {}
+        of_instance, matrices, random_ids, lamps = [], [], [], {}
         for instance in depsgraph.object_instances:
             obj = instance.object
             if not _shown(instance, space):
@@ -79,17 +86,25 @@ class Exporter:
             if instance.show_self and obj.type == "LIGHT":
                 self._lights.append(lights.lamp(instance, self))
                 self._links.append((self._lights[-1], obj))
+                if motion is not None:
+                    lamps[identity_of(instance)] = self._lights[-1]
             elif instance.show_self and (obj.type in _MESHES or obj.type in _ROUNDS):
                 found += self._object(obj)
             if instance.show_particles and obj.type == "MESH" and obj.particle_systems:
                 found += self._strands(instance.instance_object if instance.is_instance else obj)
+            matrix = [x for row in instance.matrix_world for x in row] if found else None
+            if motion is not None:
+                first, shapes = len(of_instance), [self._objects[index]["mesh"] for index in found]
+                indices = range(first, first + len(found))
+                motion.note(instance, indices, matrix, [(key, self._modifiers.get(key)) for key in shapes])
             for index in found:
                 of_instance.append(index)
-                matrices.append([x for row in instance.matrix_world for x in row])
+                matrices.append(matrix)
                 random_ids.append(instance.random_id & 0xFFFFFFFF if instance.is_instance else 0)
         for data, obj in self._links:
             self._link(data, obj)
         scene = depsgraph.scene_eval
+        through = camera_object or scene.camera
         document = {
             "file": bpy.data.filepath,
             "version": list(bpy.app.version),
@@ -97,17 +112,25 @@ class Exporter:
                 **camera.render(scene, size, depsgraph.view_layer_eval),
                 "aovs": [[aov.name, aov.type] for aov in passes.aovs(depsgraph.view_layer)],
             },
-            "camera": camera.camera(camera_object or scene.camera, scene),
+            "camera": camera.camera(through),
             "world": lights.world(scene.world, self),
             "lights": self._lights,
             "images": self.images,
             "objects": self._objects,
         }
+        if motion is not None:
+            document["render"]["shutter"] = motion.shutter
+            of_camera = motion.gather(depsgraph, through, lamps)
+            if document["camera"] is not None:
+                document["camera"]["motion"] = of_camera
         self.scene.set_document(self._json(document))
         self.scene.set_materials(self._materials)
         self._known_materials &= set(self._materials)
         matrices = np.asarray(matrices, np.float32).reshape(-1)
         self.scene.set_instances(np.asarray(of_instance, np.uint32), matrices, np.asarray(random_ids, np.uint32))
+        if motion is not None:
+            motion.hand_over(self.scene)
+            self.warnings += sorted(motion.warnings)
 
     def _json(self, document):
         """The document as JSON, which has no NaN and no infinity."""
@@ -138,6 +161,7 @@ class Exporter:
             for modifier, slot in particles.systems(obj, self._render):
                 shape = self._hair_of(obj, modifier)
                 if shape is not None:
+                    self._modifiers[shape] = modifier.name
                     slots = obj.material_slots
                     # A slot that is not there is the last one.
                     material = slots[min(max(slot, 0), len(slots) - 1)].material if slots else None
@@ -149,7 +173,8 @@ class Exporter:
         key = hash((obj.name_full, modifier.name, self._render)) & _KEY
         self._used.add(key)
         if key not in self._meshes:
-            if not particles.hand_over(self.scene, key, f"{obj.name}, {modifier.name}", obj, modifier, self._render):
+            if not particles.hand_over(self.scene, key, f"{obj.name}, {modifier.name}", obj, modifier, self._render,
+                                       self._motion is not None):
                 return None
             self._meshes.add(key)
             self._hair.setdefault(obj.name_full, set()).add(key)
@@ -186,7 +211,7 @@ class Exporter:
         data = obj.data if own else obj.to_mesh()
         try:
             if obj.type in _ROUNDS:
-                if not rounds.hand_over(self.scene, key, data):
+                if not rounds.hand_over(self.scene, key, data, self._motion is not None):
                     return None
             elif data is None or not data.polygons:
                 return None

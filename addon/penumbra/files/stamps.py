@@ -84,7 +84,7 @@ class Stamps(Exporter):
         scale = render.resolution_percentage / 100.0
         size = [max(int(n * scale), 1) for n in (render.resolution_x, render.resolution_y)]
         return {
-            "camera": camera.camera(evaluated, self._scene),
+            "camera": camera.camera(evaluated),
             "render": camera.render(self._scene, size, self._context.view_layer),
             "active": obj == self._scene.camera,
         }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::document::{CameraData, DofData, RenderData};
+use super::motion;
 use super::transform::affine;
 use crate::desc::{CameraDesc, LensDesc, ProjectionDesc};
 use crate::error::{Place, Warnings};
@@ -45,20 +46,21 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
             perspective()
         }
     };
+    let transform = affine(&data.matrix);
     let is_flat = data.r#type == "ORTHO";
     let lens = data.dof.map(|dof| lens(&dof, data.lens, is_flat));
     CameraDesc {
         name: data.name.as_str().into(),
         place,
-        transform: affine(&data.matrix),
+        transform,
         projection,
         clip_near: if is_flat { data.clip_start.max(0.0) } else { data.clip_start },
         clip_far: data.clip_end,
         shift: [data.shift_x / frame[0], data.shift_y / frame[1]],
         lens,
-        shutter: [0.0; 2],
+        shutter: render.shutter,
         exposure: render.exposure,
-        motion: Vec::new(),
+        motion: motion::keys(&transform, data.motion.iter().map(|(time, matrix)| (*time, affine(matrix)))),
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::motion::{self, MovedPoints};
 use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::tangents;
@@ -60,6 +61,23 @@ pub struct Dress {
 }
 
 impl NamedMesh {
+    /// Takes in where its points are at other times of the shutter. Points that move out of number or whose count
+    /// changes are told, and stand still.
+    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], warnings: &mut Warnings) {
+        self.dressed = None;
+        let mesh = Arc::make_mut(&mut self.mesh);
+        let count = mesh.points.len();
+        let fits = |moved: &MovedPoints<'_>| moved.positions.len() == 3 * count;
+        let finite = |moved: &MovedPoints<'_>| moved.positions.par_iter().all(|x| x.is_finite());
+        let points = |moved: &MovedPoints<'_>| (moved.time, moved.positions.as_chunks::<3>().0.to_vec());
+        mesh.motion = if moved.iter().all(|moved| fits(moved) && finite(moved)) {
+            motion::keys(&mesh.points, moved.iter().map(points))
+        } else {
+            motion::tell_of_still(&mesh.name, &mesh.place, moved.iter().all(fits), warnings);
+            Vec::new()
+        };
+    }
+
     /// The mesh with what materials want of it; the same one as long as they want the same.
     pub fn dressed(&mut self, dress: &Dress) -> Arc<MeshDesc> {
         if let Some((known, mesh)) = &self.dressed

@@ -13,6 +13,7 @@ mod layers;
 mod light;
 mod material;
 mod mesh;
+mod motion;
 mod nodes;
 mod random;
 mod rounds;
@@ -29,6 +30,7 @@ pub use document::{
 };
 pub use image::ImageSource;
 pub use mesh::{LayerArray, MeshArrays};
+pub use motion::MovedPoints;
 pub use nodes::{NodeData, SocketData, TreeData, Value};
 pub use rounds::Ends;
 pub use scene::BlenderScene;

@@ -1,8 +1,10 @@
 //! Hair curves and point clouds, from the arrays that Blender keeps them in.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::mesh::LayerArray;
+use super::motion::{self, MovedPoints};
 use super::smooth;
 use crate::desc::{RoundsDesc, Strand};
 use crate::error::{Error, Place, Result, Warnings};
@@ -14,6 +16,8 @@ pub struct Ends<'a> {
     pub points: &'a [u32],
     /// Catmull-Rom splines, as Cycles has them; else straight.
     pub smooth: bool,
+    /// True where points at other times will follow.
+    pub moving: bool,
 }
 
 /// Strands or points, and what their UV sets are called.
@@ -21,11 +25,69 @@ pub struct Ends<'a> {
 pub struct NamedRounds {
     rounds: Arc<RoundsDesc>,
     uv_names: Vec<Arc<str>>,
+    /// What they were made of; kept for those that move.
+    source: Option<Source>,
     /// As it was asked for last, and with which maps.
     dressed: Option<(Vec<String>, Arc<RoundsDesc>)>,
 }
 
+/// Points as they were handed over.
+#[derive(Debug)]
+struct Source {
+    points: Vec<[f32; 3]>,
+    radii: Vec<f32>,
+    ends: Vec<u32>,
+    smooth: bool,
+}
+
+impl Source {
+    /// Where the points of the description are while those of the source are at `moved`.
+    fn laid_out(&self, moved: &[[f32; 3]]) -> Vec<[f32; 3]> {
+        let (mut points, mut radii) = (Vec::new(), Vec::new());
+        for range in ranges(self.points.len(), &self.ends).filter(|range| usable(&self.points, &self.radii, range)) {
+            let at = &moved[range.clone()];
+            if self.smooth {
+                smooth::flatten_like(&self.points[range.clone()], at, &self.radii[range], &mut points, &mut radii);
+            } else {
+                points.extend_from_slice(at);
+            }
+        }
+        points
+    }
+}
+
+/// The points of each strand, or of each ball where no strand ends.
+fn ranges<'a>(points: usize, ends: &'a [u32]) -> impl Iterator<Item = Range<usize>> + 'a {
+    let count = if ends.is_empty() { points } else { ends.len() };
+    let end = move |strand: usize| if ends.is_empty() { strand + 1 } else { ends[strand] as usize };
+    (0..count).map(move |strand| if strand == 0 { 0 } else { end(strand - 1) }..end(strand))
+}
+
+/// True for points that are there and finite.
+fn usable(points: &[[f32; 3]], radii: &[f32], range: &Range<usize>) -> bool {
+    let finite = |i: usize| points[i].iter().all(|x| x.is_finite()) && radii[i].is_finite();
+    !range.is_empty() && range.clone().all(finite)
+}
+
 impl NamedRounds {
+    /// Takes in where the points are at other times of the shutter. Points that move out of number or whose count
+    /// changes are told, and stand still.
+    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], warnings: &mut Warnings) {
+        let Some(source) = &self.source else { return };
+        self.dressed = None;
+        let fits = |moved: &MovedPoints<'_>| moved.positions.len() == 3 * source.points.len();
+        let rounds = Arc::make_mut(&mut self.rounds);
+        let laid_out = |moved: &MovedPoints<'_>| (moved.time, source.laid_out(moved.positions.as_chunks::<3>().0));
+        let same_count = moved.iter().all(fits);
+        let others: Vec<_> = if same_count { moved.iter().map(laid_out).collect() } else { Vec::new() };
+        if same_count && others.iter().flat_map(|(_, points)| points).flatten().all(|x| x.is_finite()) {
+            rounds.motion = motion::keys(&rounds.points, others);
+        } else {
+            motion::tell_of_still(&rounds.name, &rounds.place, same_count, warnings);
+            rounds.motion.clear();
+        }
+    }
+
     /// With the map to render with as set 0 and those of `uv_maps` after it; the same one as long as they are.
     pub fn dressed(&mut self, uv_maps: &[String]) -> Arc<RoundsDesc> {
         if self.uv_names.is_empty() || uv_maps.is_empty() {
@@ -62,7 +124,7 @@ pub fn rounds(
     uvs: &[LayerArray<'_>],
     warnings: &mut Warnings,
 ) -> Result<NamedRounds> {
-    let Ends { points: ends, smooth } = ends;
+    let Ends { points: ends, smooth, moving } = ends;
     let (points, rest) = positions.as_chunks::<3>();
     let broken = |what: String| Error::invalid(place, format!("\"{name}\" {what}"));
     if !rest.is_empty() || radii.len() != points.len() {
@@ -76,26 +138,12 @@ pub fn rounds(
         let given = layer.values.len() / 2;
         return Err(broken(format!("has a UV map \"{}\" of {given} pairs for {} strands", layer.name, ends.len())));
     }
-    let usable = |i: usize| points[i].iter().all(|x| x.is_finite()) && radii[i].is_finite();
-    let alone: Vec<u32>;
-    let ranges = match ends {
-        [] => {
-            alone = (1..=points.len() as u32).collect();
-            &alone
-        }
-        ends => ends,
-    };
     let mut desc = RoundsDesc { name: name.into(), place: place.clone(), ..RoundsDesc::default() };
     desc.uvs = vec![Vec::new(); uvs.len()];
-    let (mut start, mut left_out) = (0, 0);
-    for (strand, &end) in ranges.iter().enumerate() {
-        let range = start..end as usize;
-        start = end as usize;
-        if range.is_empty() {
-            continue;
-        }
-        if !range.clone().all(usable) {
-            left_out += 1;
+    let mut left_out = 0;
+    for (strand, range) in ranges(points.len(), ends).enumerate() {
+        if !usable(points, radii, &range) {
+            left_out += usize::from(!range.is_empty());
             continue;
         }
         if smooth {
@@ -116,7 +164,8 @@ pub fn rounds(
         warnings.push(place, format!("{left_out} strands or points of \"{name}\" are not finite; they are left out"));
     }
     let uv_names = uvs.iter().map(|layer| layer.name.into()).collect();
-    Ok(NamedRounds { rounds: desc.into(), uv_names, dressed: None })
+    let source = moving.then(|| Source { points: points.to_vec(), radii: radii.to_vec(), ends: ends.to_vec(), smooth });
+    Ok(NamedRounds { rounds: desc.into(), uv_names, source, dressed: None })
 }
 
 #[cfg(test)]
@@ -125,7 +174,7 @@ mod tests {
 
     fn made(positions: &[f32], radii: &[f32], ends: &[u32]) -> (Result<Arc<RoundsDesc>>, usize) {
         let mut warnings = Warnings::new();
-        let ends = Ends { points: ends, smooth: false };
+        let ends = Ends { points: ends, ..Ends::default() };
         let made = rounds("Fur", &Place::default(), positions, radii, ends, &[], &mut warnings);
         (made.map(|mut made| made.dressed(&[])), warnings.len())
     }
@@ -157,7 +206,7 @@ mod tests {
     #[test]
     fn a_strand_has_one_place_on_each_map() {
         let positions: Vec<f32> = (0..15).map(|i| i as f32).collect();
-        let ends = Ends { points: &[2, 5], smooth: false };
+        let ends = Ends { points: &[2, 5], ..Ends::default() };
         let layer = |name, values| LayerArray { name, values };
         let maps = [layer("first", &[0.1, 0.2, 0.3, 0.4][..]), layer("second", &[0.5, 0.6, 0.7, 0.8])];
         let mut warnings = Warnings::new();
@@ -169,6 +218,28 @@ mod tests {
         assert!(Arc::ptr_eq(&named, &made.dressed(&["second".into(), "third".into()])));
         let short = [layer("first", &[0.1, 0.2][..])];
         assert!(rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, &short, &mut warnings).is_err());
+    }
+
+    /// A strand that is left out is left out at all times, and a bend keeps its count of pieces.
+    #[test]
+    fn points_move_with_the_strands_that_they_are_on() {
+        let positions = [f32::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0];
+        let ends = Ends { points: &[1, 4], smooth: true, moving: true };
+        let mut warnings = Warnings::new();
+        let mut made = rounds("Fur", &Place::default(), &positions, &[0.1; 4], ends, &[], &mut warnings).unwrap();
+        let still = made.dressed(&[]);
+        assert!(still.motion.is_empty());
+        let moved = [9.0, 9.0, 9.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.5, 1.0, 1.0, 0.5];
+        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved }], &mut warnings);
+        let desc = made.dressed(&[]);
+        assert_eq!((desc.motion.len(), desc.motion[0].time, &desc.motion[0].value), (2, 0.0, &still.points));
+        let after = &desc.motion[1];
+        assert_eq!((after.time, after.value.len()), (0.5, still.points.len()));
+        let lifted = |(now, then): (&[f32; 3], &[f32; 3])| now[..2] == then[..2] && (then[2] - 0.5).abs() < 1e-6;
+        assert!(still.points.iter().zip(&after.value).all(lifted), "{:?}", after.value);
+        assert_eq!(warnings.len(), 1);
+        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved[3..] }], &mut warnings);
+        assert!(made.dressed(&[]).motion.is_empty() && warnings.len() == 2);
     }
 
     #[test]

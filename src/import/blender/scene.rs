@@ -9,10 +9,11 @@ use super::kept::KeptImages;
 use super::layers::UvSets;
 use super::light::LampShader;
 use super::mesh::{self, Dress, LayerArray, MeshArrays, NamedMesh};
+use super::motion::{MovedInstances, MovedPoints};
 use super::nodes::TreeData;
 use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
-use super::{camera, light, material, nodes, random, rounds, world};
+use super::{camera, light, material, motion, nodes, random, rounds, world};
 use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
@@ -28,6 +29,7 @@ pub struct BlenderScene {
     revisions: u64,
     kept: KeptImages,
     instances: Vec<Placement>,
+    moved: MovedInstances,
     /// What was told of shapes as they came.
     of_shapes: HashMap<u64, Warnings>,
 }
@@ -125,6 +127,26 @@ impl BlenderScene {
         Ok(())
     }
 
+    /// Takes in where the points of the shape `key` are at other times of the shutter.
+    pub fn set_shape_motion(&mut self, key: u64, moved: &[MovedPoints<'_>]) {
+        let warnings = self.of_shapes.entry(key).or_default();
+        if let Some(mesh) = self.meshes.get_mut(&key) {
+            mesh.set_motion(moved, warnings);
+        } else if let Some(rounds) = self.rounds.get_mut(&key) {
+            rounds.set_motion(moved, warnings);
+        }
+    }
+
+    /// Takes in where `instances`, by their index among those of [`Self::set_instances`], are at another time than the
+    /// frame's: frames after it, and as many matrices of sixteen floats by rows.
+    ///
+    /// # Errors
+    /// Lists of different lengths, and instances that are not there.
+    pub fn add_instance_motion(&mut self, time: f64, instances: &[u32], matrices: &[f32]) -> Result<()> {
+        let (count, place) = (self.instances.len(), self.place());
+        self.moved.add(time, instances, matrices, count, &place)
+    }
+
     /// Forgets a mesh, strands or points.
     pub fn remove_shape(&mut self, key: u64) {
         self.meshes.remove(&key);
@@ -155,6 +177,7 @@ impl BlenderScene {
             let what = format!("{} matrices and {} random ids for {count} instances", matrices.len(), random.len());
             return Err(Error::invalid(&self.place(), what));
         }
+        self.moved.clear();
         let placements = objects.iter().zip(matrices).zip(random);
         self.instances = placements.map(|((&object, &matrix), &random)| Placement { object, matrix, random }).collect();
         Ok(())
@@ -204,7 +227,7 @@ impl BlenderScene {
         let mut known: HashMap<u64, ShapeRef> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];
         let mut lost = 0;
-        for &Placement { object, matrix, random } in &self.instances {
+        for (number, &Placement { object, matrix, random }) in self.instances.iter().enumerate() {
             let Some(data) = document.objects.get(object as usize) else {
                 lost += 1;
                 continue;
@@ -227,13 +250,14 @@ impl BlenderScene {
                 }
             };
             of_object[object as usize].push(desc.instances.len() as u32);
+            let transform = affine_of_floats(&matrix);
             desc.instances.push(InstanceDesc {
                 name: data.name.as_str().into(),
                 place: desc.place.at(&data.name),
                 asset: if data.asset.is_empty() { data.name.as_str().into() } else { data.asset.as_str().into() },
                 shape,
-                transform: affine_of_floats(&matrix),
-                motion: Vec::new(),
+                transform,
+                motion: self.moved.of(number as u32, &transform),
                 materials: match (data.materials.as_slice(), default) {
                     ([], Some(_)) => vec![default],
                     (slots, _) => slots.iter().map(|slot| slot.or(default)).collect(),

@@ -9,11 +9,24 @@ const MOST: f32 = 16.0;
 /// Appends the strand through `points` with `radii`, which spline, too, to `to` and `to_radii`. Beyond its ends the
 /// strand's first and last point are repeated, as in Cycles.
 pub fn flatten(points: &[[f32; 3]], radii: &[f32], to: &mut Vec<[f32; 3]>, to_radii: &mut Vec<f32>) {
+    flatten_like(points, points, radii, to, to_radii);
+}
+
+/// The same in as many pieces as the strand through `model`, which has as many points.
+pub fn flatten_like(
+    model: &[[f32; 3]],
+    points: &[[f32; 3]],
+    radii: &[f32],
+    to: &mut Vec<[f32; 3]>,
+    to_radii: &mut Vec<f32>,
+) {
     let Some(last) = points.len().checked_sub(1) else { return };
-    let ball = |i: usize| [points[i][0], points[i][1], points[i][2], radii[i]];
+    let four_of = |points: &[[f32; 3]], k: usize| {
+        [k.saturating_sub(1), k, k + 1, (k + 2).min(last)].map(|i| [points[i][0], points[i][1], points[i][2], radii[i]])
+    };
     for k in 0..last {
-        let four = [ball(k.saturating_sub(1)), ball(k), ball(k + 1), ball((k + 2).min(last))];
-        let pieces = pieces(&four);
+        let four = four_of(points, k);
+        let pieces = pieces(&four_of(model, k));
         for piece in 0..pieces {
             let [x, y, z, radius] = at(&four, piece as f32 / pieces as f32);
             to.push([x, y, z]);

@@ -38,6 +38,8 @@ pub struct CameraData {
     pub dof: Option<DofData>,
     /// What panoramic cameras have.
     pub panorama: PanoramaData,
+    /// Where it is at other times of the shutter: frames after the frame, and `matrix_world`.
+    pub motion: Vec<(f64, [[f64; 4]; 4])>,
 }
 
 impl Default for CameraData {
@@ -57,6 +59,7 @@ impl Default for CameraData {
             ortho_scale: 6.0,
             dof: None,
             panorama: PanoramaData::default(),
+            motion: Vec::new(),
         }
     }
 }

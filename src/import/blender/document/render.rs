@@ -20,6 +20,8 @@ pub struct RenderData {
     pub film_transparent: bool,
     /// The view layer's.
     pub pass_alpha_threshold: f64,
+    /// When the shutter opens and closes, frames after the frame; both 0 without motion blur.
+    pub shutter: [f64; 2],
     /// The view layer's shader AOVs: name, and `COLOR` or `VALUE`.
     pub aovs: Vec<(String, String)>,
 }
@@ -33,6 +35,7 @@ impl Default for RenderData {
             exposure: 1.0,
             film_transparent: false,
             pass_alpha_threshold: 0.5,
+            shutter: [0.0; 2],
             aovs: Vec::new(),
         }
     }

@@ -104,7 +104,10 @@ pub fn transform<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
         "NORMAL" => Quantity::Normal,
         _ => Quantity::Vector,
     };
-    flow.graph.transform(quantity, space("convert_from"), space("convert_to"), value)
+    let (from, to) = (space("convert_from"), space("convert_to"));
+    let moved = flow.graph.transform(quantity, from, to, value);
+    // Normals are unit in every space that they come to.
+    if quantity == Quantity::Normal && from != to { flow.graph.apply(Function::Normalize(3), &[moved]) } else { moved }
 }
 
 /// Vector Curves.
