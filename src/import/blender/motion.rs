@@ -29,14 +29,6 @@ pub(super) fn keys<T: Clone + PartialEq>(now: &T, others: impl IntoIterator<Item
     keys
 }
 
-/// True where anything moves while the shutter is open.
-pub(super) fn moves(desc: &SceneDesc) -> bool {
-    desc.cameras.iter().any(|camera| !camera.motion.is_empty())
-        || desc.instances.iter().any(|instance| !instance.motion.is_empty())
-        || desc.meshes.iter().any(|mesh| !mesh.motion.is_empty())
-        || desc.rounds.iter().any(|rounds| !rounds.motion.is_empty())
-}
-
 /// Tells of a shape whose points can't be followed through the shutter: their number changes, or they are not finite.
 pub(super) fn tell_of_still(name: &str, place: &Place, same_count: bool, warnings: &mut Warnings) {
     let why = if same_count { "are not all finite" } else { "change in number" };
