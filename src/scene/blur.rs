@@ -77,7 +77,9 @@ impl Scene {
         // Triangles are flat, and rounds bend.
         let step = if matches!(shape, Shape::Mesh(_)) { 1.0 } else { 1e-2 };
         let [u, v] = it.at;
-        let to = |at: [f32; 2]| (shape.geometry(it.primitive, at, instance.placement()).p - it.p) / step;
+        let mut moved = None;
+        let placement = instance.placement_at(it.time, &mut moved);
+        let to = |at: [f32; 2]| (shape.geometry(it.primitive, at, placement, it.time).p - it.p) / step;
         let steps = [to([u + step, v]), to([u, v + step])];
         steps.iter().all(|step| step.is_finite()).then_some(steps)
     }
@@ -95,7 +97,7 @@ impl Scene {
             return None;
         }
         let instance = self.instance(it.instance);
-        let there = Interaction::on(self.shape(instance), instance, it.primitive, at, it.wo);
+        let there = Interaction::on(self.shape(instance), instance, it.primitive, at, it.wo, it.time);
         // The side that is seen stays the same, whatever an edge hides.
         Some(Interaction { instance: it.instance, front: it.front, path: it.path, ..there })
     }

@@ -54,9 +54,10 @@ impl Scene {
         if reach <= 0.0 || amount <= 0.0 {
             return None;
         }
-        let (corners, normals) = self.shape(instance).smooth_triangle(it.primitive)?;
+        let (corners, normals) = self.shape(instance).smooth_triangle(it.primitive, it.time)?;
         let n = blend(normals, it.at);
-        let up = instance.object_to_render.transform_vector3(n);
+        let mut moved = None;
+        let up = instance.placement_at(it.time, &mut moved).to_render.transform_vector3(n);
         let height = height(corners, normals, it.at, up.dot(ng) > 0.0);
         Some(offset_ray_origin(it.p + up * (height * amount.min(1.0)), it.p_err, ng, ng))
     }

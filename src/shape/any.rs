@@ -111,10 +111,10 @@ impl Shape {
         }
     }
 
-    /// Corners and shading normals of a triangle in the shape's space; `None` where it has none.
-    pub fn smooth_triangle(&self, primitive: u32) -> Option<([Vec3; 3], [Vec3; 3])> {
+    /// Corners and shading normals of a triangle at `time` in the shape's space; `None` where it has none.
+    pub fn smooth_triangle(&self, primitive: u32, time: f32) -> Option<([Vec3; 3], [Vec3; 3])> {
         match self {
-            Self::Mesh(mesh) => Some((mesh.corners(primitive), mesh.corner_normals(primitive)?)),
+            Self::Mesh(mesh) => Some((mesh.corners_at(primitive, time), mesh.corner_normals(primitive, time)?)),
             Self::Rounds(_) => None,
         }
     }

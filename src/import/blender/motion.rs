@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::transform::affine_of_floats;
-use crate::desc::{Motion, SceneDesc};
+use crate::desc::Motion;
 use crate::error::{Error, Place, Result, Warnings};
 use crate::math::DAffine3;
 

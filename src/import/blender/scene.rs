@@ -13,7 +13,7 @@ use super::motion::{MovedInstances, MovedPoints};
 use super::nodes::TreeData;
 use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
-use super::{camera, light, material, motion, nodes, random, rounds, world};
+use super::{camera, light, material, nodes, random, rounds, world};
 use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 

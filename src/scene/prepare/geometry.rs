@@ -89,7 +89,7 @@ pub fn prepare(
         });
         let has_inside = prepared.materials.iter().any(|&m| materials[m as usize].has_inside());
         insides.push(has_inside.then(|| {
-            let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1] };
+            let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1].clone() };
             Bvh::build(vec![blases[shape].clone()], vec![alone])
         }));
         instances.push(prepared);
