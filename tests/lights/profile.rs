@@ -128,6 +128,7 @@ fn shapes() -> Vec<(&'static str, AnyEmitter)> {
         uvs: Vec::new(),
         colors: None,
         material_slots: None,
+        motion: None,
     };
     let ball = RoundEmitters::new(Arc::new(ball), emission()).unwrap();
     vec![
