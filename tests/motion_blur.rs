@@ -229,6 +229,7 @@ fn a_bar_that_spins_is_the_mean_of_all_instants() {
     let expected = mean_of_instants(128, 16, "combined", at, all_of("Combined"));
     for count in [2, 5] {
         let mut desc = still.clone();
+        desc.instances[0].transform = spin(0.0);
         desc.instances[0].motion = keys(count, |share| spin(turn * (share - FRAME)));
         let found = all_of("Combined")(&picture(&desc, SIZE, &boxed("combined", SPP)));
         assert_near(&format!("{count} keys"), &found, &expected, 1.0 / (1.0 / f64::from(SPP) + 1.0 / 2048.0));

@@ -253,7 +253,7 @@ fn instances_that_move_are_hit_where_they_are() {
         let times = if k % 3 == 2 { Times::new(vec![0.0, 0.5, 1.0]).unwrap() } else { still_times.clone() };
         let blas = if deforms { shape.moving(&times) } else { shape.still(&times, 0.3) };
         let at_frame = traced(&motion.at(0.5));
-        let moving = placed(&[blas.clone()], &[instance(0, at_frame, Some(motion.clone()))]);
+        let moving = placed(std::slice::from_ref(&blas), &[instance(0, at_frame, Some(motion.clone()))]);
         let mut hits = 0;
         for time in moments(&mut rng, 10) {
             let blas = if deforms { shape.still(&times, time) } else { blas.clone() };
@@ -276,7 +276,7 @@ fn among_many_each_stands_where_it_is() {
     // But for those that are far away.
     let list: Vec<_> = motions(&mut rng).into_iter().enumerate().filter(|(k, _)| k % 5 != 4).map(|(_, m)| m).collect();
     for (k, motion) in list.into_iter().cycle().take(120).enumerate() {
-        let offset = DVec3::from(vector(&mut rng)) * 6.0;
+        let offset = DVec3::from(vector(&mut rng)) * 2.0;
         let motion = motion.rebased(DVec3::ZERO, offset);
         let at_frame = traced(&motion.at(0.5));
         instances.push(instance((k % 6) as u32, at_frame, (k % 4 > 0).then(|| Arc::new(motion))));
