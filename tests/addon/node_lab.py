@@ -199,8 +199,8 @@ def _inputs():
         probe = Tile("probe")
         names = [socket.name for socket in probe.node(kind).outputs if socket.enabled]
         bpy.data.materials.remove(probe.material)
-        # Islands are numbered by each engine in its own way.
-        for name in (name for name in names if name != "Random Per Island"):
+        # Not there, as docs/blender.md says.
+        for name in (name for name in names if name not in {"Random Per Island", "Pointiness"}):
             yield f"{kind[10:]} {name}", lambda t, k=kind, n=name: t.node(k).outputs[n]
     for name in ("Fresnel", "Facing"):
         yield f"Layer Weight {name}", lambda t, n=name: t.node(
