@@ -102,6 +102,13 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         tint: e.input(node, "coat_color", [1.0; 4]),
         normal: e.optional(node, "coat_normal"),
     });
+    for (input, what) in [
+        ("coat_affect_color", "coat's effect on the color beneath"),
+        ("coat_affect_roughness", "coat's effect on the roughness beneath"),
+        ("coat_anisotropy", "coat's anisotropy"),
+    ] {
+        left_out(e, node, input, what);
+    }
     let sheen = weighted(e, node, ["sheen", "sheen_color"], [0.0, 1.0]);
     s.sheen = Some((sheen, e.scalar(node, "sheen_roughness", 0.3)));
     s.film = Some(Film {
@@ -166,6 +173,7 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         tint: e.input(node, "coat_color", [1.0; 4]),
         normal: e.optional(node, "geometry_coat_normal"),
     });
+    left_out(e, node, "coat_roughness_anisotropy", "coat's anisotropy");
     let fuzz = weighted(e, node, ["fuzz_weight", "fuzz_color"], [0.0, 1.0]);
     s.sheen = Some((fuzz, e.scalar(node, "fuzz_roughness", 0.5)));
     let micrometres = e.scalar(node, "thin_film_thickness", 0.5);
