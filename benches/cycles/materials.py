@@ -207,8 +207,6 @@ def page(furnaces, grid, size, samples, seconds, threads):
 KNOWN = [
     "- At 85°, what lies beneath a dielectric or a coat: Cycles takes up to 2 % too much off it there. White plastic and "
     "white lacquer keep all light, so that 1 is exact.",
-    "- Films on rough metal at 85°: Cycles makes up for light that scatters more than once as for the metal without its "
-    "film, Penumbra as for the metal with it.",
     "- Glass seen from its denser side: Cycles loses up to 4 % at grazing angles, Penumbra nothing (IOR 0.7). A ball of "
     "rough glass is therefore darker in Cycles the more often light bounces within. White ones of Transmission Weight 1 "
     "in a white furnace should show their disc, 0.664 of a tile; at roughness 0.6 and 1 Cycles shows 0.646 and 0.648, "

@@ -77,13 +77,13 @@ impl Film {
         plain.lerp(film, self.weight)
     }
 
-    /// Mean over the hemisphere, by a few angles.
+    /// Mean over the hemisphere. Approximation: that of the surface without the film, as in Cycles.
     pub fn average(&self) -> Rgb {
-        // Gauss–Legendre in μ² with three nodes.
-        [(0.112_701_67_f32, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_35, 5.0 / 18.0)]
-            .into_iter()
-            .map(|(mu_squared, weight)| self.reflectance(mu_squared.sqrt()) * weight)
-            .sum()
+        match &self.base {
+            Base::Dielectric(base) => base.average(),
+            Base::Metal(base) => base.average(),
+            Base::Conductor(base) => base.fit().average(),
+        }
     }
 
     fn over_dielectric(&self, cos: f32, eta: f32) -> Rgb {

@@ -172,7 +172,7 @@ mod tests {
         let none = LightData { size: 0.0, ..area };
         assert!(light_of(&none).is_none());
         let portal = LightData { is_portal: true, size: 2.0, ..none };
-        assert_eq!(lamp(portal).kind, LightKind::Portal { width: 2.0, height: 2.0 });
+        assert_eq!(lamp(portal).kind, LightKind::Portal { width: 2.0, height: 0.25 });
     }
 
     fn light_of(data: &LightData) -> Option<LightDesc> {
