@@ -101,6 +101,9 @@ def judge_shapes(stage, answer, found):
             continue
         if len(instances) == 1:
             world = stage.world(prim)
+            if not near(world[:, 3], [0, 0, 0, 1]):
+                found.check(answer.warned(path, "projective"), path, "is projected, and nothing was said of it")
+                world[:, 3] = [0, 0, 0, 1]
             ours = np.reshape(instances[0]["matrix"], (4, 4))
             found.check(near(ours, world), path, f"stands at\n{ours}\nand not at\n{world}")
             judge_motion(stage, prim, instances[0], answer, found)

@@ -112,7 +112,15 @@ impl Xform {
                 continue;
             }
             match op.at(time) {
-                Ok(matrix) => local *= affine(&matrix.0),
+                Ok(matrix) => {
+                    if [3, 7, 11].iter().any(|&i| matrix.0[i] != 0.0) || matrix.0[15] != 1.0 {
+                        reading.warn(
+                            self.prim.path(),
+                            "its transform is projective; the last column counts as 0, 0, 0, 1",
+                        );
+                    }
+                    local *= affine(&matrix.0);
+                }
                 Err(error) => reading.warn(self.prim.path(), format!("{error}; that is left out")),
             }
         }

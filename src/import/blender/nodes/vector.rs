@@ -67,7 +67,8 @@ pub fn bump<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let strength = flow.input(at, "Strength");
     let distance = flow.input(at, "Distance");
     let distance = if at.node.flag("invert") { flow.graph.scale(distance, -1.0) } else { distance };
-    let width = flow.input_or(at, "Filter Width", 0.1);
+    // Nodes of versions that know no width look a whole pixel further.
+    let width = flow.input_or(at, "Filter Width", 1.0);
     let filter_width = flow.graph.known(width).map_or(0.1, |width| width[0]);
     flow.graph.push(Op::Bump(Bump { height, strength, distance, normal, filter_width, object_space: true }))
 }
