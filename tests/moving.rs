@@ -4,12 +4,15 @@
 #[path = "support/rng.rs"]
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod rng;
+#[path = "support/shoot.rs"]
+mod shoot;
 
 use std::sync::Arc;
 
-use penumbra::bvh::{Blas, Bvh, Hit, Instance, Isa};
+use penumbra::bvh::{Blas, Bvh, Instance, Isa};
 use penumbra::math::{Affine3A, Ball, DAffine3, DMat3, DQuat, DVec3, MovingTransform, Ray, Times, Vec3, traced};
 use rng::Rng;
+use shoot::shoot;
 
 /// Triangles, or segments between balls.
 #[derive(Clone)]
@@ -128,18 +131,6 @@ fn placed(blases: &[Arc<Blas>], instances: &[Instance]) -> Vec<Bvh> {
 
 fn instance(blas: u32, object_to_render: Affine3A, motion: Option<Arc<MovingTransform>>) -> Instance {
     Instance { blas, object_to_render, motion, mask: 1 }
-}
-
-/// All agree bit for bit, and with `any_hit`; the common answer.
-fn shoot(bvhs: &[Bvh], ray: &Ray) -> Option<Hit> {
-    let bits = |hit: &Option<Hit>| hit.map(|h| (h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.primitive));
-    let hit = bvhs[0].closest_hit(ray, 1);
-    for bvh in bvhs {
-        let other = bvh.closest_hit(ray, 1);
-        assert_eq!(bits(&other), bits(&hit), "{} differs on {ray:?}", bvh.isa().name());
-        assert_eq!(bvh.any_hit(ray, 1), hit.is_some(), "any_hit of {} differs on {ray:?}", bvh.isa().name());
-    }
-    hit
 }
 
 /// Times in and around the shutter.

@@ -1,10 +1,14 @@
 //! Round cones and balls in the acceleration structure, against an independent distance function in `f64`,
 //! for every instruction set of this machine.
 
+#[path = "support/shoot.rs"]
+mod shoot;
+
 use std::sync::Arc;
 
 use penumbra::bvh::{Blas, Bvh, Hit, Instance, Isa};
 use penumbra::math::{Affine3A, Ball, DVec3, Mat3A, Ray, RoundCone, Vec3, center_of, offset_ray_origin, place_point};
+use shoot::shoot;
 
 /// A small generator of numbers (PCG-XSH-RR of M. O'Neill).
 struct Rng(u64);
@@ -130,18 +134,6 @@ fn placed(blas: Arc<Blas>, object_to_render: Affine3A) -> Vec<Bvh> {
     let instance = Instance { blas: 0, object_to_render, motion: None, mask: 1 };
     let build = || Bvh::build(vec![blas.clone()], vec![instance.clone()]);
     Isa::available().iter().map(|&isa| build().with_isa(isa).expect("available")).collect()
-}
-
-/// All agree bit for bit, and with `any_hit`; the common answer.
-fn shoot(bvhs: &[Bvh], ray: &Ray) -> Option<Hit> {
-    let bits = |hit: &Option<Hit>| hit.map(|h| (h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.primitive));
-    let hit = bvhs[0].closest_hit(ray, 1);
-    for bvh in bvhs {
-        let other = bvh.closest_hit(ray, 1);
-        assert_eq!(bits(&other), bits(&hit), "{} differs on {ray:?}", bvh.isa().name());
-        assert_eq!(bvh.any_hit(ray, 1), hit.is_some(), "any_hit of {} differs on {ray:?}", bvh.isa().name());
-    }
-    hit
 }
 
 /// The point and the normal that `hit` stands for, relative to the origin of the balls.

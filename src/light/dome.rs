@@ -157,10 +157,10 @@ impl Emitter for Dome {
         // Random numbers have 24 bits, of which choices would take some: `uc` adds more below them.
         let mut u0 = f64::from(u[0]) + f64::from(uc) * STEP;
         let openings = self.openings(at);
-        if let Some((openings, guided)) = &openings {
+        if let Some(through @ (openings, guided)) = &openings {
             if u0 < *guided {
                 let wi = openings.sample(uc, [((u0 / guided) as f32).min(ONE_MINUS_EPSILON), u[1]])?;
-                let (li, pdf) = (self.le(wi, None), self.pdf_li(at, wi, None));
+                let (li, pdf) = (self.le(wi, None), with_openings(through, wi, self.pdf_unguided(at, wi)));
                 return (pdf > 0.0 && !li.is_black()).then_some(LightSample { li, wi, end: None, pdf, delta: false });
             }
             u0 = (u0 - guided) / (1.0 - guided);

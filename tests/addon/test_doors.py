@@ -11,11 +11,8 @@ pytest.importorskip("OpenImageIO")
 from test_addon import read  # noqa: E402
 from test_export import EXE  # noqa: E402
 
-pytestmark = pytest.mark.skipif(not EXE.exists(), reason=f"{EXE} is not built")
-
 # Pixels along the side of a block.
 BLOCK = 8
-
 
 
 def combined(path):

@@ -13,8 +13,6 @@ from lamps_of_cycles import TO_Y_UP, close, differences, place
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXE = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
 
-pytestmark = pytest.mark.skipif(not EXE.exists(), reason=f"{EXE} is not built")
-
 
 def read(path, *options):
     """What the engine makes of a file, and what it says of it."""
