@@ -31,6 +31,10 @@ pub fn describe(scene: &SceneDesc) -> Value {
             "window": scene.render.window,
             "passes": scene.render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
             "product": scene.render.product.as_deref(),
+            "products": scene.render.products.iter().map(|product| json!({
+                "name": &*product.name,
+                "passes": product.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
+            })).collect::<Vec<_>>(),
         },
     })
 }

@@ -9,6 +9,7 @@ use openusd::sdf::AssetPath;
 use openusd::tf::Token;
 use openusd::usd::Prim;
 
+use super::per_instance::Each;
 use super::cards::{self, Picture};
 use super::inherit::{Context, Pose};
 use super::kinds::{Kind, Role};
@@ -102,7 +103,7 @@ pub(super) fn replace(
         })
     });
     let (leaf, path, asset) = (leaf.clone(), prim.path().clone(), context.asset.clone());
-    walk.show(Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None }, shown);
+    walk.show(Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None, each: Each::default() }, shown);
     true
 }
 

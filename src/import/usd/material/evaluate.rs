@@ -148,6 +148,9 @@ impl<'m, 'a> Evaluator<'m, 'a> {
 
     /// USD's texture coordinates in the primvar `name`.
     pub fn texcoord(&mut self, name: Arc<str>) -> Id {
+        if self.materials.per_instance.contains(&name) {
+            return self.exprs.push(Op::Primvar { name, fallback: [0.0, 0.0, 0.0, 1.0] });
+        }
         let set = self.materials.uv_set(name);
         self.exprs.push(Op::Uv { set, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] })
     }

@@ -24,7 +24,7 @@ mod texture;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use openusd::sdf;
@@ -81,10 +81,12 @@ pub(super) struct Materials<'a> {
     /// Networks that were gathered ahead, in the order in which they are tried.
     gathered: HashMap<sdf::Path, Vec<Found>>,
     udims: HashMap<(String, bool), Result<Tiled, String>>,
+    /// Primvars of two numbers that instances have values of their own of: no UV set can hold them.
+    per_instance: BTreeSet<Arc<str>>,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(reading: &'a Reading<'a>, images: Images) -> Self {
+    pub fn new(reading: &'a Reading<'a>, images: Images, per_instance: BTreeSet<Arc<str>>) -> Self {
         Self {
             reading,
             images,
@@ -95,6 +97,7 @@ impl<'a> Materials<'a> {
             unbound: None,
             gathered: HashMap::new(),
             udims: HashMap::new(),
+            per_instance,
         }
     }
 

@@ -54,7 +54,8 @@ pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
     let texel = match look_up(e, node, &wish) {
         Ok(texel) => texel,
         Err(what) => {
-            let [r, g, b, a] = e.exprs.known(fallback).unwrap_or_default();
+            // In the precision in which it is authored.
+            let [r, g, b, a] = e.exprs.known(fallback).unwrap_or_default().map(|x| x as f32);
             e.warn(node, format!("{what}; its fallback ({r}, {g}, {b}, {a}) is used"));
             return Some(fallback);
         }
