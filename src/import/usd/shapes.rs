@@ -34,6 +34,9 @@ pub(super) struct Shapes {
     pub by_look: HashMap<(*const Look, bool), Dressed>,
 }
 
+/// With so many meshes one is compared that look alike at first sight.
+const MOST_ALIKE: usize = 16;
+
 /// A shape to be built.
 struct Job {
     source: Option<Source>,
@@ -81,7 +84,7 @@ pub(super) fn build(
                 (None, Some((source, digest))) => {
                     let same = same_meshes.entry((digest, wants.clone())).or_default();
                     let is_same = |job: &Job| job.source.as_ref().is_some_and(|known| known.is_same_mesh(source));
-                    same.iter().copied().find(|&job| is_same(&jobs[job])).unwrap_or_else(|| {
+                    same.iter().rev().take(MOST_ALIKE).copied().find(|&job| is_same(&jobs[job])).unwrap_or_else(|| {
                         same.push(jobs.len());
                         jobs.len()
                     })

@@ -3,7 +3,15 @@
 use crate::math::Vec3;
 
 use super::Dimensions;
-use super::hash::unit;
+use super::hash::{lookup3, unit};
+
+/// A number from 0 to 1 for each cell of whole coordinates x and y, or of all three: Open Shading Language's
+/// `cellnoise`, which MaterialX shares.
+pub fn cell(p: Vec3, dimensions: u8) -> f32 {
+    let [x, y, z] = p.to_array().map(|x| x.floor() as i32 as u32);
+    let hash = if dimensions < 3 { lookup3([x, y]) } else { lookup3([x, y, z]) };
+    (f64::from(hash) / f64::from(u32::MAX)) as f32
+}
 
 /// What is picked for white noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

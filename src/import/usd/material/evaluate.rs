@@ -142,6 +142,7 @@ impl<'m, 'a> Evaluator<'m, 'a> {
                 let id = self.input(node, "in", [0.0; 4]);
                 Some(self.exprs.extract(id, place(output)?))
             }
+            "artistic_ior" => Some(pattern::artistic_ior(self, node, output == "extinction")),
             _ => pattern::compute(self, node),
         }
     }

@@ -17,7 +17,10 @@ mod models;
 mod mtlx;
 mod network;
 mod pattern;
+mod ramps;
+mod random;
 mod shade;
+mod spaces;
 mod surface;
 mod texture;
 
@@ -176,7 +179,8 @@ impl<'a> Materials<'a> {
             // Whatever its graph looks up: a tilt has to go by something.
             None => graph_uv_sets(material).next().unwrap_or(0),
         });
-        normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0))
+        let named = material.graph.ops().contains(&Op::Leaf(Leaf::Tangent)).then_some(0);
+        normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0)).or(named)
     }
 
     /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.

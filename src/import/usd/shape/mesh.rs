@@ -151,10 +151,9 @@ impl Mesh {
     /// The same for meshes that are equal, and cheap: for others seldom.
     pub fn digest(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
-        (self.points.len(), self.counts.len(), self.indices.len(), self.flipped).hash(&mut hasher);
-        let every = (self.points.len() / 64).max(1);
-        let some = self.points.iter().step_by(every).flatten();
-        some.for_each(|x| x.to_bits().hash(&mut hasher));
+        (self.counts.len(), self.indices.len(), self.flipped).hash(&mut hasher);
+        primvar::digest(&self.points, &mut hasher);
+        self.primvars.digest(&mut hasher);
         hasher.finish()
     }
 

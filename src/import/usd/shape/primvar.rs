@@ -1,6 +1,7 @@
 //! Primvars: how values lie on a shape.
 
 use std::collections::HashSet;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use openusd::sdf::{Value, ValueKind};
@@ -107,7 +108,23 @@ pub(super) fn named(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], n
     names.iter().filter_map(found).collect()
 }
 
+/// Adds how many values there are, and a few of them.
+pub(super) fn digest<const N: usize>(values: &[[f32; N]], hasher: &mut impl Hasher) {
+    values.len().hash(hasher);
+    let some = values.iter().step_by((values.len() / 32).max(1)).flatten();
+    some.for_each(|x| x.to_bits().hash(hasher));
+}
+
 impl Primvars {
+    /// Adds a few of the values of each.
+    pub fn digest(&self, hasher: &mut impl Hasher) {
+        let Self { uvs, color, opacity, normals, widths, named } = self;
+        uvs.iter().for_each(|data| digest(&data.values, hasher));
+        color.iter().chain(normals).for_each(|data| digest(&data.values, hasher));
+        opacity.iter().chain(widths).for_each(|data| digest(&data.values, hasher));
+        named.iter().for_each(|data| digest(&data.values, hasher));
+    }
+
     /// True where nothing was found.
     pub fn is_empty(&self) -> bool {
         let Self { uvs, color, opacity, normals, widths, named } = self;
