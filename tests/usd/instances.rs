@@ -220,7 +220,12 @@ fn equal_meshes_are_one_without_being_instances() {
     ];
     let mut text = "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n".to_string();
     text += &mesh("A", same);
-    text += &mesh("B", &format!("{same}\ndouble3 xformOp:translate = (0, 0, 5)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]"));
+    text += &mesh(
+        "B",
+        &format!(
+            "{same}\ndouble3 xformOp:translate = (0, 0, 5)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]"
+        ),
+    );
     for (i, other) in others.iter().enumerate() {
         text += &mesh(&format!("Other{i}"), other);
     }

@@ -17,9 +17,12 @@ fn references(count: usize, instanceable: impl Fn(usize) -> bool) -> (tempfile::
     let mut asset = String::from("#usda 1.0\n( defaultPrim = \"Asset\" )\ndef Xform \"Asset\" {\n");
     for i in 0..19 {
         let order = "uniform token[] xformOpOrder = [\"xformOp:translate\"]";
-        writeln!(asset, "def Mesh \"M{i}\" {{ double3 xformOp:translate = ({i}, 0, 0)\n {order}\n {TRIANGLE}
-                point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, {i})] }}")
-            .unwrap();
+        writeln!(
+            asset,
+            "def Mesh \"M{i}\" {{ double3 xformOp:translate = ({i}, 0, 0)\n {order}\n {TRIANGLE}
+                point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, {i})] }}"
+        )
+        .unwrap();
     }
     asset.push_str("}\n");
     std::fs::write(dir.path().join("asset.usda"), asset).unwrap();

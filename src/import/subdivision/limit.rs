@@ -4,10 +4,10 @@
 
 use rayon::prelude::*;
 
-use super::{Scheme, settle};
 use super::masks::{TASK, add, narrow};
 use super::rules::Rules;
 use super::topology::Topology;
+use super::{Scheme, settle};
 
 /// The values at the limit, one for each point. The faces are quads (Catmull-Clark) or triangles (Loop).
 /// What sharpness still changes further down is `settle.rs`'s.

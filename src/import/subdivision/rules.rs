@@ -142,7 +142,8 @@ pub(super) fn of(topology: &Topology, sharpness: Sharpness) -> Rules {
 }
 
 fn rule(topology: &Topology, sharpness: &Sharpness, point: usize) -> Rule {
-    let edge = |half: usize, end: usize| (sharpness.edges[topology.edge_of[half] as usize], topology.faces.corners[end]);
+    let edge =
+        |half: usize, end: usize| (sharpness.edges[topology.edge_of[half] as usize], topology.faces.corners[end]);
     let edges = topology.around(point).flat_map(|corner| {
         // The edge that closes the face at the point is another's first edge, save at the rim.
         let before = topology.previous(corner);

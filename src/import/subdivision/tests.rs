@@ -195,7 +195,8 @@ fn creases_and_rims_are_as_in_blender() {
     assert_moments(
         "creased",
         &moments(&creased),
-        &[98.0, 6.6844275, 35.5447772, 3.9976795, 3.9592404, 72.5740677],
+        // At a quality of 10: the ends of sharp edges are only as near to the limit as OpenSubdiv isolates them.
+        &[98.0, 6.6844081, 35.5465434, 3.9982562, 3.9594914, 72.57517],
     );
 
     let (points, list) = open();
@@ -210,35 +211,44 @@ fn creases_and_rims_are_as_in_blender() {
     }
 }
 
-/// Sharpness that outlasts the levels, ends of sharp edges, sharp points and rims: what is at the limit after two
-/// levels is there after more, and seven come as near to it as their faces are small.
+/// Sharpness that outlasts the levels, ends of sharp edges, sharp points and rims.
 #[test]
 fn limits_are_those_of_finer_levels() {
     let (open_points, open_list) = open();
     let cube: Vec<_> = CUBE.into_iter().map(skew).collect();
-    let triangles: Vec<&[u32]> =
-        vec![&[0, 4, 6], &[0, 6, 2], &[0, 1, 5], &[0, 5, 4], &[4, 5, 7], &[4, 7, 6], &[3, 7, 5], &[3, 5, 1], &[6, 7, 3],
-             &[6, 3, 2]];
-    let creases = [([0, 4], 10.0), ([4, 5], 3.3), ([5, 7], 1.6), ([7, 6], 0.7), ([1, 3], 4.2), ([3, 2], 5.0)];
-    let of_open = [([4, 8], 2.4), ([8, 7], 10.0), ([7, 6], 6.1)];
-    let corners = [(2, 3.5), (6, 2.0)];
-    let cases: [(&str, Scheme, &[[f32; 3]], &[&[u32]], &[([u32; 2], f32)]); 3] = [
+    let triangles: [&[u32]; 10] = [
+        &[0, 4, 6],
+        &[0, 6, 2],
+        &[0, 1, 5],
+        &[0, 5, 4],
+        &[4, 5, 7],
+        &[4, 7, 6],
+        &[3, 7, 5],
+        &[3, 5, 1],
+        &[6, 7, 3],
+        &[6, 3, 2],
+    ];
+    let creases = [([0, 4], 10.0), ([4, 5], 3.3), ([5, 7], 1.6), ([7, 6], 0.7), ([1, 3], 2.2), ([3, 2], 3.0)];
+    let of_open = [([4, 8], 2.4), ([8, 7], 10.0), ([7, 6], 3.1)];
+    let corners = [(2, 2.5), (6, 2.0)];
+    type Case<'a> = (&'a str, Scheme, &'a [[f32; 3]], &'a [&'a [u32]], &'a [([u32; 2], f32)]);
+    let cases: [Case<'_>; 3] = [
         ("cube", Scheme::CatmullClark, &cube, &CUBE_FACES, &creases),
         ("open", Scheme::CatmullClark, &open_points, &open_list, &of_open),
         ("loop", Scheme::Loop, &cube, &triangles, &creases),
     ];
     for (name, scheme, points, list, creases) in cases {
         let cage = || Cage { creases, corners: &corners, scheme, ..cage(list, points.len()) };
-        let coarse = Refinement::new(cage(), 2);
-        let found = coarse.vertex(points);
-        // Points stay the last ones from level to level.
-        let fine = Refinement::new(cage(), 7).smooth(points);
-        let fine = &fine[fine.len() - found.len()..];
+        let found = Refinement::new(cage(), 2).vertex(points);
+        // Points stay the last ones from level to level. What has not gone to the limit is near it where the faces
+        // are small and no sharpness is left.
+        let fine = Refinement::new(cage(), 8).smooth(points);
         let finer = Refinement::new(cage(), 5).vertex(points);
-        let finer = &finer[finer.len() - found.len()..];
-        for ((a, b), c) in found.iter().zip(fine).zip(finer) {
-            assert!(Vec3::from(*a).distance((*c).into()) < 4e-6, "{name}: {a:?} is {c:?} after five levels");
-            assert!(Vec3::from(*a).distance((*b).into()) < 2e-3, "{name}: {a:?} is not at the limit near {b:?}");
+        let same = |of: &[[f32; 3]], i: usize| Vec3::from(of[of.len() - found.len() + i]);
+        for (i, &at) in found.iter().enumerate() {
+            let at = Vec3::from(at);
+            assert!(at.distance(same(&finer, i)) < 4e-6, "{name}: {at:?} is {:?} after five levels", same(&finer, i));
+            assert!(at.distance(same(&fine, i)) < 1e-3, "{name}: {at:?} is not near {:?}", same(&fine, i));
         }
     }
 }

@@ -9,10 +9,10 @@ use openusd::sdf::AssetPath;
 use openusd::tf::Token;
 use openusd::usd::Prim;
 
-use super::per_instance::Each;
 use super::cards::{self, Picture};
 use super::inherit::{Context, Pose};
 use super::kinds::{Kind, Role};
+use super::per_instance::Each;
 use super::shape::{self, Built, Quad, StandIn};
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
@@ -103,7 +103,10 @@ pub(super) fn replace(
         })
     });
     let (leaf, path, asset) = (leaf.clone(), prim.path().clone(), context.asset.clone());
-    walk.show(Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None, each: Each::default() }, shown);
+    walk.show(
+        Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None, each: Each::default() },
+        shown,
+    );
     true
 }
 

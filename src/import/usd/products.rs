@@ -165,7 +165,8 @@ mod tests {
 
     #[test]
     fn products_that_frame_otherwise_are_told_and_left_out() {
-        let (pictures, passes, said) = of(r#"def RenderProduct "A" { token productName = "a.exr" rel orderedVars = </Ci> }
+        let (pictures, passes, said) =
+            of(r#"def RenderProduct "A" { token productName = "a.exr" rel orderedVars = </Ci> }
             def RenderProduct "B" { rel orderedVars = </N> rel camera = </Other> uniform int2 resolution = (9, 9) }
             def RenderProduct "C" { token productName = "c.exr" uniform bool disableDepthOfField = 1 }"#);
         assert_eq!((pictures.len(), &*passes), (0, "combined"));

@@ -6,9 +6,9 @@ use openusd::tf::Token;
 use openusd::usd::Prim;
 
 use super::frame::{Off, Said};
+use super::products;
 use super::stage::Reading;
 use super::values::Values;
-use super::products;
 use crate::desc::RenderDesc;
 use crate::import::Purpose;
 

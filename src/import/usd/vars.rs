@@ -51,7 +51,8 @@ fn of_var(values: &Values<'_>) -> Vec<String> {
     }
     let known = [&source, &given].into_iter().find(|text| !text.is_empty()).map_or(name, |text| text);
     if found.is_empty() {
-        values.warn(format!("there is no pass for \"{known}\": it is left out; penumbra:NAME asks for one by its name"));
+        values
+            .warn(format!("there is no pass for \"{known}\": it is left out; penumbra:NAME asks for one by its name"));
     }
     if let Some((_, space)) = IN_OTHER_SPACES.iter().find(|(names, _)| names.contains(&&*plain(known))) {
         values.warn(format!("\"{known}\" is {space}: rendered as {}, in world space", found.join(", ")));
@@ -217,7 +218,10 @@ mod tests {
         }
         let (passes, said) = of(&[&source("Neye"), &source("Peye")]);
         assert_eq!((&*passes, said.lines().count()), ("normal position", 2));
-        assert!(said.contains("/V1: \"Peye\" is in the camera's space: rendered as position, in world space"), "{said}");
+        assert!(
+            said.contains("/V1: \"Peye\" is in the camera's space: rendered as position, in world space"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -12,12 +12,14 @@ use openusd_schemas::geom::Primvar;
 use super::bindings::{Bindings, Scope};
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
+use super::per_instance::Each;
 use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::per_instance::Each;
-use super::{clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, pulse, render, schemas, skel, stamp};
+use super::{
+    clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, pulse, render, schemas, skel, stamp,
+};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -273,7 +275,10 @@ impl<'r, 'a> Walk<'r, 'a> {
             skin,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
-        self.show(Shown { leaf: Rc::new(leaf), path, pose, asset, scope: None, color: None, each: Each::default() }, shown);
+        self.show(
+            Shown { leaf: Rc::new(leaf), path, pose, asset, scope: None, color: None, each: Each::default() },
+            shown,
+        );
     }
 
     /// Adds one.

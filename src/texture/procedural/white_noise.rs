@@ -42,3 +42,21 @@ impl WhiteNoise {
         [self.value(p, w), green, blue]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The hash of MaterialX's `mx_noise.glsl`, worked out on its own.
+    #[test]
+    fn cells_are_those_of_materialx() {
+        let of = |p: [f32; 3], dimensions| f64::from(cell(p.into(), dimensions));
+        for (found, expected) in [
+            (of([3.5, 7.25, 9.0], 2), 0.984_289_292_630),
+            (of([-1.5, 0.75, 9.0], 2), 0.041_623_512_758),
+            (of([3.0, 7.0, -0.5], 3), 0.145_173_044_443),
+        ] {
+            assert!((found - expected).abs() < 1e-7, "{found} is not {expected}");
+        }
+    }
+}

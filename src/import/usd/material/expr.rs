@@ -111,7 +111,9 @@ impl Exprs {
                 (true, Op::Apply(_, args) | Op::Procedural(_, args)) => {
                     args.iter().for_each(|arg| needed[arg.0 as usize] = true)
                 }
-                (true, Op::Image { uv: from, .. } | Op::Transform { value: from, .. }) => needed[from.0 as usize] = true,
+                (true, Op::Image { uv: from, .. } | Op::Transform { value: from, .. }) => {
+                    needed[from.0 as usize] = true
+                }
                 _ => {}
             }
         }

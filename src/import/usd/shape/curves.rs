@@ -264,14 +264,7 @@ struct LaidOut {
 }
 
 /// Which points each curve has, and which varying values.
-fn lay_out(
-    counts: &[i32],
-    points: usize,
-    basis: Basis,
-    wrap: Wrap,
-    place: &Place,
-    warnings: &mut Warnings,
-) -> LaidOut {
+fn lay_out(counts: &[i32], points: usize, basis: Basis, wrap: Wrap, place: &Place, warnings: &mut Warnings) -> LaidOut {
     let mut curves = Vec::with_capacity(counts.len());
     let (mut start, mut joints, mut short, mut odd) = (0, 0, 0, 0);
     let spare = |count: i32| basis == Basis::Bezier && count % 3 != i32::from(wrap != Wrap::Closed);

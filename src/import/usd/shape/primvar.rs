@@ -171,7 +171,11 @@ pub(in super::super) fn has_two_numbers(primvar: &Primvar) -> bool {
 pub(in super::super) type Convert<const N: usize> = fn(Value) -> Option<Vec<[f32; N]>>;
 
 /// The values of `primvar`; `None` where it has none.
-pub(in super::super) fn data<const N: usize>(reading: &Reading<'_>, primvar: &Primvar, convert: Convert<N>) -> Option<Data<N>> {
+pub(in super::super) fn data<const N: usize>(
+    reading: &Reading<'_>,
+    primvar: &Primvar,
+    convert: Convert<N>,
+) -> Option<Data<N>> {
     let mut data = array(reading, primvar.attribute(), convert, Interpolation::Constant)?;
     data.name = primvar.primvar_name().into();
     data.stride = primvar.element_size().ok().and_then(|size| usize::try_from(size).ok()).unwrap_or(1).max(1);

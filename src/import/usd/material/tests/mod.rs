@@ -92,6 +92,8 @@ fn value_of(m: &MaterialDesc, id: ValueId, texels: &[(u32, [f64; 4])]) -> [f64; 
             Op::Leaf(_) => [0.5; 4],
             Op::Image { texture, .. } => texels.iter().find(|(of, _)| of == texture).unwrap().1,
             Op::Apply(function, args) => function.eval(&args.iter().map(|arg| values[arg.index()]).collect::<Vec<_>>()),
+            // What any cell of noise may be.
+            Op::Procedural(crate::desc::graph::Procedural::Cell { .. }, _) => [0.25; 4],
             other => panic!("{other:?}"),
         });
     }
