@@ -110,6 +110,8 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
         "motion": poses(&instance.motion),
         "materials": instance.materials.iter().map(material).collect::<Vec<_>>(),
         "color": instance.color,
+        "attributes": instance.info.attributes.iter().map(|(name, value)| (name.to_string(), json!(value)))
+            .collect::<serde_json::Map<_, _>>(),
         "visibility": visibility(instance.visibility),
         "links": links(&instance.links, scene),
         "shaped": instance.shaped.as_ref().map(|shaped| json!({

@@ -132,7 +132,7 @@ fn of_expression(expression: &str) -> Vec<&'static str> {
         // RenderMan's albedo.
         return vec!["denoising_albedo"];
     }
-    // E: the path ends at a light; D, S and T: scattered diffusely, as in a mirror, through the surface.
+    // E: the path ends at a light; D, S and T: scattered diffusely, as in a mirror (sharp or not), through the surface.
     for (from, to) in [
         ("<L.>", "L"),
         ("<RD>", "D"),
@@ -144,6 +144,12 @@ fn of_expression(expression: &str) -> Vec<&'static str> {
         ("<TD>", "T"),
         ("<TS>", "T"),
         ("<T.>", "T"),
+        ("<RG>", "S"),
+        ("<R[GS]>", "S"),
+        ("<R[SG]>", "S"),
+        ("<T[GS]>", "T"),
+        ("<T[SG]>", "T"),
+        ("[DGS]", "[DS]"),
         ("[OL]", "[LO]"),
         ("[LO]", "E"),
         ("[SD]", "[DS]"),
@@ -252,6 +258,9 @@ mod tests {
                 "lpe:nothruput;noinfinitecheck;noclamp;unoccluded;overwrite;C<.S'passthru'>*((U2L)|O)",
                 vec!["denoising_albedo"],
             ),
+            ("C<RD>L", vec!["diffuse_direct"]),
+            ("C<R[GS]>[LO]", vec!["glossy_direct"]),
+            ("C[DGS]*[LO]", vec!["combined"]),
             ("C<RD>S+L", vec![]),
         ] {
             assert_eq!(of_expression(expression), expected, "{expression}");
