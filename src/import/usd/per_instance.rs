@@ -51,9 +51,12 @@ fn is_of_each(primvar: &Primvar) -> bool {
     !matches!(interpolation, None | Some(Interpolation::Constant | Interpolation::Uniform))
 }
 
-/// Which instances something is in, of instancers with such primvars; the innermost first.
+/// An instance of an instancer with such primvars.
+type One = (Arc<PerInstance>, u32);
+
+/// Which of them something is in; the innermost first.
 #[derive(Clone, Default)]
-pub(super) struct Each(Option<Arc<[(Arc<PerInstance>, u32)]>>);
+pub(super) struct Each(Option<Arc<[One]>>);
 
 impl Each {
     /// Instance `index` of `instancer`.
@@ -70,7 +73,7 @@ impl Each {
         }
     }
 
-    fn iter(&self) -> impl Iterator<Item = &(Arc<PerInstance>, u32)> {
+    fn iter(&self) -> impl Iterator<Item = &One> {
         self.0.iter().flat_map(|list| list.iter())
     }
 }
