@@ -102,6 +102,8 @@ pub struct Warning {
     pub place: Place,
     /// What was wrong and what was done about it.
     pub what: String,
+    /// True for what may be as it should be, and only whoever made the file can tell: nothing to stop for.
+    pub is_note: bool,
 }
 
 impl fmt::Display for Warning {
@@ -125,17 +127,31 @@ impl Warnings {
 
     /// Adds a warning unless the same one is there already.
     pub fn push(&mut self, place: &Place, what: impl Into<String>) {
-        let warning = Warning { place: place.clone(), what: what.into() };
-        if self.known.insert(warning.clone()) {
+        self.add(Warning { place: place.clone(), what: what.into(), is_note: false });
+    }
+
+    /// Adds a note, likewise.
+    pub fn note(&mut self, place: &Place, what: impl Into<String>) {
+        self.add(Warning { place: place.clone(), what: what.into(), is_note: true });
+    }
+
+    /// Adds `warning`, likewise; true where it is new.
+    pub fn add(&mut self, warning: Warning) -> bool {
+        let is_new = self.known.insert(warning.clone());
+        if is_new {
             self.list.push(warning);
         }
+        is_new
     }
 
     /// Adds those of `other`.
     pub fn extend(&mut self, other: Self) {
-        for warning in other.list {
-            self.push(&warning.place, warning.what);
-        }
+        other.list.into_iter().for_each(|warning| _ = self.add(warning));
+    }
+
+    /// How many are no notes.
+    pub fn faults(&self) -> usize {
+        self.list.iter().filter(|warning| !warning.is_note).count()
     }
 
     /// All, in the order in which they came.

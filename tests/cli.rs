@@ -398,6 +398,34 @@ fn numbers_that_make_no_sense_are_refused() {
     assert_eq!(folder.names(), ["out.-001.exr", "out.-002.exr", "tri.glb"]);
 }
 
+/// One render, a file for each product with the passes of its own.
+#[test]
+fn a_stage_has_a_picture_for_each_of_its_products() {
+    let folder = Folder::new();
+    let stage = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/usd/stages/products.usda");
+    let run = |args: &[&str]| {
+        let program = Command::new(env!("CARGO_BIN_EXE_penumbra")).current_dir(folder.path("")).args(args).output();
+        program.unwrap()
+    };
+    let layers = |name: &str| -> Vec<String> {
+        let picture = exr::read(&folder.path(name)).unwrap();
+        picture.layers.iter().map(|layer| layer.name.rsplit('.').next().unwrap().to_owned()).collect()
+    };
+    let output = run(&["render", stage, "--spp", "1", "--strict"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!((layers("a.exr"), layers("b.exr")), (vec!["Combined".into(), "Depth".into()], vec!["Normal".into()]));
+    assert!(stderr(&output).contains("a.exr, b.exr: 8x4"), "{}", stderr(&output));
+    // Whoever names the file gets one, with all passes.
+    let output = run(&["render", stage, "--spp", "1", "--strict", "-o", "one.exr"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("note: ") && stderr(&output).contains("asks for 2 pictures"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(layers("one.exr"), ["Combined", "Depth", "Normal"]);
+}
+
 /// Where the command line is silent, a USD stage says where its picture goes and how large it is.
 #[test]
 fn a_stage_names_its_own_picture() {

@@ -140,7 +140,8 @@ fn describe(scene: &SceneDesc, warnings: &Warnings, most: usize) -> Value {
             }))
             .collect::<Vec<_>>(),
         "variants": scene.variants,
-        "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "warnings": warnings.iter().filter(|w| !w.is_note).map(ToString::to_string).collect::<Vec<_>>(),
+        "notes": warnings.iter().filter(|w| w.is_note).map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 
@@ -213,6 +214,9 @@ fn page(info: &Value, meshes: usize) -> String {
     }
     for warning in list("warnings") {
         line(format!("  warning: {}", warning.as_str().unwrap_or_default()));
+    }
+    for note in list("notes") {
+        line(format!("  note: {}", note.as_str().unwrap_or_default()));
     }
     page
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use penumbra::desc::{ProductDesc, SceneDesc};
 use penumbra::error::Warnings;
 use penumbra::film::SampleId;
 use penumbra::job;
@@ -142,6 +143,7 @@ fn render_frame(
         None if sample.is_none() => Some(Files::of(args, frame, desc.render.product.as_deref())?),
         typed => typed.filter(|_| sample.is_none()),
     };
+    let more = more_pictures(args, frame, &desc, &mut warnings)?;
     environment::apply(args, &mut desc)?;
     let view =
         job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
@@ -152,8 +154,8 @@ fn render_frame(
     let prepared = prepare(desc, &view, settings)?;
     warnings.extend(prepared.warnings.clone());
     tell(&warnings, told);
-    if args.get_flag("strict") && !warnings.is_empty() {
-        bail!("--strict: {} warnings about {}", warnings.len(), scene::path(args).display());
+    if args.get_flag("strict") && warnings.faults() > 0 {
+        bail!("--strict: {} warnings about {}", warnings.faults(), scene::path(args).display());
     }
     let scene = &prepared.scene;
     let Some(Files { out, preview }) = files else {
@@ -176,7 +178,15 @@ fn render_frame(
     let name = scene::path(args).display().to_string();
     let metadata = job::metadata(name, frame, &prepared, &rendered, settings, &warnings);
     let picture = film.develop();
-    let saved = save(&out, &picture, &metadata, &exr::Options { half: settings.half, ..exr::Options::default() })?;
+    let options = exr::Options { half: settings.half, ..exr::Options::default() };
+    let part = |product: &ProductDesc| picture.part(&scene.passes.layers_of(&product.passes));
+    let saved = match more.first() {
+        None => save(&out, &picture, &metadata, &options)?,
+        Some((_, product)) => save(&out, &part(product), &metadata, &options)?,
+    };
+    for (out, product) in more.iter().skip(1) {
+        save(out, &part(product), &metadata, &options)?;
+    }
     if let Some(preview) = &preview {
         let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
         png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
@@ -191,17 +201,39 @@ fn render_frame(
     }
     rendering(false);
     let [width, height] = scene.size;
-    say::err(format!("{}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", out.display(), prepared.camera));
+    let others = more.iter().skip(1).map(|(out, _)| format!(", {}", out.display())).collect::<String>();
+    let out = out.display();
+    say::err(format!("{out}{others}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", prepared.camera));
     Ok(Outcome::Done)
+}
+
+/// Where each picture goes that the scene wants, the first included; none where it is one alone, or the user has said
+/// otherwise.
+fn more_pictures(
+    args: &ArgMatches,
+    frame: Option<f64>,
+    desc: &SceneDesc,
+    warnings: &mut Warnings,
+) -> anyhow::Result<Vec<(PathBuf, ProductDesc)>> {
+    let products = &desc.render.products;
+    if products.is_empty() || args.contains_id("debug-sample") {
+        return Ok(Vec::new());
+    }
+    if args.contains_id("output") || args.value_source("passes") == Some(ValueSource::CommandLine) {
+        let what = format!("asks for {} pictures; one is written, as the command line says", products.len());
+        warnings.note(&desc.place, what);
+        return Ok(Vec::new());
+    }
+    let file = |product: &ProductDesc| Ok((Files::of(args, frame, Some(&product.name))?.out, product.clone()));
+    products.iter().map(file).collect()
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.
 fn tell(warnings: &Warnings, told: &mut Warnings) {
     for warning in warnings.iter() {
-        let before = told.len();
-        told.push(&warning.place, warning.what.as_str());
-        if told.len() > before {
-            say::err(format!("warning: {warning}"));
+        if told.add(warning.clone()) {
+            let kind = if warning.is_note { "note" } else { "warning" };
+            say::err(format!("{kind}: {warning}"));
         }
     }
 }

@@ -36,7 +36,7 @@ pub use material::{
     NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
-pub use render::{Conform, RenderDesc};
+pub use render::{Conform, ProductDesc, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};
 pub use shadow::ShadowDesc;
 pub use subsurface::{SubsurfaceDesc, SubsurfaceMethod};

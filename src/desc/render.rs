@@ -32,8 +32,19 @@ pub struct RenderDesc {
     pub passes: Vec<Arc<str>>,
     /// AOVs that materials may fill, in the order of the file, each name once.
     pub aovs: Vec<AovDesc>,
-    /// Where the file wants its picture.
+    /// Where the file wants its picture, the first one.
     pub product: Option<Arc<str>>,
+    /// Each of its pictures, where it wants more than one of the same view; `passes` are those of all.
+    pub products: Vec<ProductDesc>,
+}
+
+/// One of several pictures of a view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProductDesc {
+    /// Where the file wants it.
+    pub name: Arc<str>,
+    /// Its passes, as `RenderDesc::passes`.
+    pub passes: Vec<Arc<str>>,
 }
 
 impl Default for RenderDesc {
@@ -50,6 +61,7 @@ impl Default for RenderDesc {
             passes: Vec::new(),
             aovs: Vec::new(),
             product: None,
+            products: Vec::new(),
         }
     }
 }

@@ -187,6 +187,17 @@ impl PassSet {
         })
     }
 
+    /// Names of the layers that those of its passes have which are among `names`; `*` in place of the name of a group
+    /// or AOV is each.
+    pub fn layers_of(&self, names: &[Arc<str>]) -> BTreeSet<String> {
+        let asks = |name: &str, wanted: &str| match wanted.strip_suffix('*') {
+            Some(prefix) => name.starts_with(prefix),
+            None => name.eq_ignore_ascii_case(wanted),
+        };
+        let asked = self.iter().filter(|chosen| names.iter().any(|wanted| asks(&chosen.name(), wanted)));
+        asked.flat_map(|chosen| chosen.layers()).collect()
+    }
+
     /// Names of the light groups whose sums are kept, in the order of their indices.
     pub fn groups(&self) -> &[Arc<str>] {
         &self.groups

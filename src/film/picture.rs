@@ -1,5 +1,7 @@
 //! A developed picture: named layers of floats, row by row from the top.
 
+use std::collections::BTreeSet;
+
 use super::pass::Storage;
 
 /// One pass of a picture.
@@ -36,6 +38,12 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// The same with the layers of some names alone.
+    pub fn part(&self, names: &BTreeSet<String>) -> Self {
+        let layers = self.layers.iter().filter(|layer| names.contains(&layer.name)).cloned().collect();
+        Self { layers, ..*self }
+    }
+
     /// The layer of this name, or of this name after a view layer's ("ViewLayer.Combined").
     pub fn layer(&self, name: &str) -> Option<&Layer> {
         let matches = |layer: &&Layer| {

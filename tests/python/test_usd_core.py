@@ -664,6 +664,19 @@ bpy.ops.wm.usd_export(filepath=sys.argv[-1] + "/y.usda", convert_orientation=Tru
 """
 
 
+def test_values_of_each_instance_are_those_that_openusd_flattens():
+    path = ROOT / "tests/usd/stages/instance_primvars.usda"
+    answer = Answer(read(path))
+    stage = Usd.Stage.Open(str(path))
+    of = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/World/Many"))
+    indices = list(UsdGeom.PointInstancer(of.GetPrim()).GetProtoIndicesAttr().Get())
+    for name in ("tint", "cell", "displayColor"):
+        flat = of.GetPrimvar(name).ComputeFlattened()
+        expected = [list(flat[i]) for i, prototype in enumerate(indices) if prototype == 0]
+        found = [i["attributes"][name][: len(expected[0])] for i in answer.instances["/World/Many/Leaf"]]
+        assert found == expected, name
+
+
 @pytest.fixture(scope="module")
 def blender(tmp_path_factory):
     """A folder of stages that Blender wrote, by a process of its own: Blender brings a USD of its own."""

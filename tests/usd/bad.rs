@@ -101,11 +101,52 @@ def Cube "Flat"
         "/Group: LightAPI on a prim of type Xform has no shape to shine; it is ignored",
         "/Blocked: there is no number in its radius; the shape is left out",
         "/Typed: there is no number in its radius; the shape is left out",
-        "/Flat: the shape has no extent; it is left out",
+        "/Flat: its size is 0; the shape is left out",
     ];
     for what in told {
         loaded.said_of(what);
     }
     assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
     assert_eq!(loaded.paths(), ["/Mesh"]);
+}
+
+#[test]
+fn faults_are_told_once_and_in_terms_of_the_file() {
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Xform "Inside" ( references = </Nothing> )
+{
+}
+def BasisCurves "Short"
+{
+    int[] curveVertexCounts = [3]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    float[] widths = [1, 1, 1, 1, 1] (interpolation = "vertex")
+}
+def BasisCurves "Beyond"
+{
+    uniform token type = "linear"
+    int[] curveVertexCounts = [2, 3]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    float[] widths = [1, 1, 1, 1, 1] (interpolation = "varying")
+}
+def RenderSettings "Unnamed"
+{
+}
+"#;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    std::fs::write(&path, text).unwrap();
+    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
+    let told = [
+        "/Inside: its internal reference to </Nothing> finds no prim there; it is left out",
+        "/Short: 1 curves have too few points for their basis; they are left out",
+        "/Beyond: 1 curves need more points than there are; they are left out",
+        "/Unnamed: are no settings of the stage, whose renderSettingsPrimPath names none: they are not used",
+    ];
+    for what in told {
+        loaded.said_of(what);
+    }
+    assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
+    assert_eq!(loaded.paths(), ["/Beyond"]);
 }

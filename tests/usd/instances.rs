@@ -91,7 +91,8 @@ fn point_instancers_place_their_prototypes() {
             assert!(close, "{:?} at {frame}: {:?} is not {expected:?}", instance.place, instance.transform);
         }
         let meshes: HashSet<ShapeRef> = loaded.scene.instances.iter().map(|i| i.shape).collect();
-        assert_eq!(meshes.len(), 2);
+        // Tree and bush are the same triangle.
+        assert_eq!(meshes.len(), 1);
     }
 }
 
@@ -195,4 +196,45 @@ def Cube "Textured2" ( prepend apiSchemas = ["MaterialBindingAPI"] ) { rel mater
     for path in ["/Textured:", "/Textured2:"] {
         assert!(loaded.said_of(path).contains("primvar st, which is absent"), "{:#?}", loaded.said);
     }
+}
+
+#[test]
+fn equal_meshes_are_one_without_being_instances() {
+    let mesh = |name: &str, more: &str| {
+        format!(
+            r#"def Mesh "{name}" {{
+                int[] faceVertexCounts = [3]
+                int[] faceVertexIndices = [0, 1, 2]
+                point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+                {more}
+            }}
+"#
+        )
+    };
+    let same = "color3f[] primvars:displayColor = [(1, 0, 0)]";
+    let others = [
+        "uniform token orientation = \"leftHanded\"",
+        "uniform token subdivisionScheme = \"none\"",
+        "color3f[] primvars:displayColor = [(0, 1, 0)]",
+        "float[] creaseSharpnesses = [3]\nint[] creaseIndices = [0, 1]\nint[] creaseLengths = [2]",
+    ];
+    let mut text = "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n".to_string();
+    text += &mesh("A", same);
+    text += &mesh(
+        "B",
+        &format!(
+            "{same}\ndouble3 xformOp:translate = (0, 0, 5)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]"
+        ),
+    );
+    for (i, other) in others.iter().enumerate() {
+        text += &mesh(&format!("Other{i}"), other);
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    std::fs::write(&path, text).unwrap();
+    let loaded = super::try_load(&path, &ImportOptions::default()).unwrap();
+    loaded.said_nothing();
+    assert_eq!(loaded.one("/A").shape, loaded.one("/B").shape);
+    assert_eq!(loaded.origin("/B"), [0.0, 0.0, 5.0]);
+    assert_eq!(loaded.scene.meshes.len(), 1 + others.len());
 }

@@ -7,6 +7,7 @@ mod composition;
 mod corpus;
 mod draw_modes;
 mod instance_colors;
+mod instance_primvars;
 mod instances;
 mod large;
 mod layers;

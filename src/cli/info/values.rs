@@ -31,6 +31,10 @@ pub fn describe(scene: &SceneDesc) -> Value {
             "window": scene.render.window,
             "passes": scene.render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
             "product": scene.render.product.as_deref(),
+            "products": scene.render.products.iter().map(|product| json!({
+                "name": &*product.name,
+                "passes": product.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
+            })).collect::<Vec<_>>(),
         },
     })
 }
@@ -106,6 +110,8 @@ fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
         "motion": poses(&instance.motion),
         "materials": instance.materials.iter().map(material).collect::<Vec<_>>(),
         "color": instance.color,
+        "attributes": instance.info.attributes.iter().map(|(name, value)| (name.to_string(), json!(value)))
+            .collect::<serde_json::Map<_, _>>(),
         "visibility": visibility(instance.visibility),
         "links": links(&instance.links, scene),
         "shaped": instance.shaped.as_ref().map(|shaped| json!({

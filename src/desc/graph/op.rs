@@ -112,6 +112,11 @@ pub enum Procedural {
         /// How many coordinates count: w alone, x y, x y z, or all.
         dimensions: u8,
     },
+    /// vector: a number of 0 to 1 for each cell of whole coordinates, those of Open Shading Language and MaterialX.
+    Cell {
+        /// How many coordinates count: x y or x y z.
+        dimensions: u8,
+    },
     /// vector, scale, frequency, anisotropy, orientation (radians in the plane, a vector in space). Value,
     /// phase and intensity stand in the first three places, the value in the fourth, too.
     Gabor {

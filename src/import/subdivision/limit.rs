@@ -4,38 +4,44 @@
 
 use rayon::prelude::*;
 
-use super::Scheme;
-use super::masks::{TASK, add, loop_weight, narrow};
-use super::rules::{Rule, Rules};
+use super::masks::{TASK, add, narrow};
+use super::rules::Rules;
 use super::topology::Topology;
+use super::{Scheme, settle};
 
 /// The values at the limit, one for each point. The faces are quads (Catmull-Clark) or triangles (Loop).
-/// At the end of a sharp edge the smooth mask is close and not exact (as in OpenSubdiv).
+/// What sharpness still changes further down is `settle.rs`'s.
 pub(super) fn positions<const N: usize>(
     topology: &Topology,
     rules: &Rules,
     scheme: Scheme,
     values: &[[f32; N]],
 ) -> Vec<[f32; N]> {
-    let one = |(point, value)| limit(topology, &rules.points[point], scheme, values, point, value);
+    let one = |(point, value)| limit(topology, rules, scheme, values, point, value);
     values.par_iter().with_min_len(TASK).enumerate().map(one).collect()
 }
 
 fn limit<const N: usize>(
     topology: &Topology,
-    rule: &Rule,
+    rules: &Rules,
     scheme: Scheme,
     values: &[[f32; N]],
     point: usize,
     value: &[f32; N],
 ) -> [f32; N] {
-    // Sharpness that is left over mixes as it does one level down.
+    let rule = &rules.points[point];
     let (corner, crease) = (f64::from(rule.corner), f64::from(rule.crease));
     let smooth = 1.0 - corner - crease;
     let around = topology.around(point);
-    if corner == 1.0 || around.len() == 0 {
+    if around.len() == 0 || corner == 1.0 && !rule.open {
         return *value;
     }
+    if rule.open
+        && let Some(settled) = settle::limit(topology, rules, scheme, values, point)
+    {
+        return narrow(settled);
+    }
+    // Where faces form no fan what sharpness is left mixes as it does one level down.
     let mut sum = [0.0; N];
     add(&mut sum, value, corner + crease * 4.0 / 6.0);
     if crease > 0.0 {
@@ -43,10 +49,7 @@ fn limit<const N: usize>(
     }
     if smooth > 0.0 {
         let n = around.len() as f64;
-        let (edge, face) = match scheme {
-            Scheme::Loop => (1.0 / (3.0 / (8.0 * loop_weight(n)) + n), 0.0),
-            _ => (4.0 / (n * (n + 5.0)), 1.0 / (n * (n + 5.0))),
-        };
+        let (edge, face) = settle::smooth(scheme, n);
         add(&mut sum, value, smooth * (1.0 - n * (edge + face)));
         for corner in around {
             let next = topology.next(corner);

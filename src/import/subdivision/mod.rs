@@ -13,6 +13,7 @@ mod masks;
 mod normals;
 mod rules;
 mod seams;
+mod settle;
 mod topology;
 
 use masks::{linear, smooth};

@@ -21,6 +21,9 @@ pub(super) struct Rule {
     pub ends: [u32; 2],
     /// What it is by the sharpness of this level, without mixing.
     pub kind: Kind,
+    /// True where the masks of the limit don't hold yet: some sharpness runs out further down, or a sharp edge ends
+    /// here.
+    pub open: bool,
 }
 
 /// What a vertex is by the sharp edges around it.
@@ -35,7 +38,7 @@ pub(super) enum Kind {
 }
 
 impl Rule {
-    pub const SMOOTH: Self = Self { corner: 0.0, crease: 0.0, ends: [0; 2], kind: Kind::Smooth };
+    pub const SMOOTH: Self = Self { corner: 0.0, crease: 0.0, ends: [0; 2], kind: Kind::Smooth, open: false };
     pub const CORNER: Self = Self { corner: 1.0, kind: Kind::Corner, ..Self::SMOOTH };
 
     /// A vertex on a curve of infinite sharpness.
@@ -45,7 +48,7 @@ impl Rule {
 }
 
 /// What is left of a sharpness one level down.
-fn decrement(sharpness: f32) -> f32 {
+pub(super) fn decrement(sharpness: f32) -> f32 {
     if sharpness >= INFINITE { sharpness } else { (sharpness - 1.0).max(0.0) }
 }
 
@@ -128,38 +131,46 @@ pub(super) struct Rules {
     pub points: Vec<Rule>,
     /// Sharpness of each edge.
     pub edges: Vec<f32>,
+    /// Sharpness of each vertex itself.
+    pub corners: Vec<f32>,
 }
 
 /// The rules of `topology`. Where sharpness runs out within the level, those of both sides mix.
 pub(super) fn of(topology: &Topology, sharpness: Sharpness) -> Rules {
     let points = (0..topology.points).map(|point| rule(topology, &sharpness, point)).collect();
-    Rules { points, edges: sharpness.edges }
+    Rules { points, edges: sharpness.edges, corners: sharpness.points }
 }
 
 fn rule(topology: &Topology, sharpness: &Sharpness, point: usize) -> Rule {
-    let vertex = sharpness.points[point];
+    let edge =
+        |half: usize, end: usize| (sharpness.edges[topology.edge_of[half] as usize], topology.faces.corners[end]);
+    let edges = topology.around(point).flat_map(|corner| {
+        // The edge that closes the face at the point is another's first edge, save at the rim.
+        let before = topology.previous(corner);
+        let closing = (topology.twins[before] == NONE).then(|| edge(before, before));
+        std::iter::once(edge(corner, topology.next(corner))).chain(closing)
+    });
+    ring(sharpness.points[point], edges)
+}
+
+/// The rule of a vertex of sharpness `vertex`, by the sharpness and the other end of each of its edges.
+pub(super) fn ring(vertex: f32, edges: impl Iterator<Item = (f32, u32)>) -> Rule {
     let (mut now, mut then) = (Sharp::default(), Sharp::default());
     let (mut transitions, mut sum) = (0, 0.0);
-    let mut add = |half: usize, end: usize| {
-        let edge = sharpness.edges[topology.edge_of[half] as usize];
+    let (mut endless, mut runs_out) = (0, 0.0 < vertex && vertex < INFINITE);
+    for (edge, end) in edges {
         for (sharp, edge) in [(&mut now, edge), (&mut then, decrement(edge))] {
             if edge > 0.0 {
                 if let Some(slot) = sharp.ends.get_mut(sharp.count as usize) {
-                    *slot = topology.faces.corners[end];
+                    *slot = end;
                 }
                 sharp.count += 1;
             }
         }
+        endless += u32::from(edge >= INFINITE);
+        runs_out |= 0.0 < edge && edge < INFINITE;
         if edge > 0.0 && decrement(edge) == 0.0 {
             (transitions, sum) = (transitions + 1, sum + edge);
-        }
-    };
-    for corner in topology.around(point) {
-        add(corner, topology.next(corner));
-        // The edge that closes the face at the point is another's first edge, save at the rim.
-        let before = topology.previous(corner);
-        if topology.twins[before] == NONE {
-            add(before, before);
         }
     }
     if vertex > 0.0 && decrement(vertex) == 0.0 {
@@ -182,5 +193,6 @@ fn rule(topology: &Topology, sharpness: &Sharpness, point: usize) -> Rule {
             (rule.crease, rule.ends) = (1.0 - weight, then.ends);
         }
     }
-    rule
+    let stays = vertex >= INFINITE || endless > 2;
+    Rule { open: !stays && (runs_out || endless == 1), ..rule }
 }

@@ -50,8 +50,10 @@ pub(super) fn rules(values: &Topology, mesh: &Topology, mesh_rules: &Rules, opti
         NONE => INFINITE,
         _ => mesh_rules.edges[mesh.edge_of[half] as usize],
     };
+    let corner = |value: usize| values.around(value).next().map_or(0.0, |c| mesh_rules.corners[mesh.point(c)]);
     Rules {
         points: (0..values.points).map(rule).collect(),
+        corners: (0..values.points).map(corner).collect(),
         edges: values.edges.iter().map(|e| edge(e.half as usize)).collect(),
     }
 }
@@ -79,7 +81,9 @@ impl Seams<'_> {
             return Rule::CORNER;
         }
         let rule = self.mesh_rules.points[point];
-        Rule { ends: rule.ends.map(|end| self.neighbour(value, end).unwrap_or(value as u32)), ..rule }
+        // Around the end of a seam there is no closed ring of values, as there is of faces.
+        let open = rule.open && !is_end_of_seam;
+        Rule { open, ends: rule.ends.map(|end| self.neighbour(value, end).unwrap_or(value as u32)), ..rule }
     }
 
     /// The value at the other end of an edge from the point of `value` to point `end`.

@@ -57,7 +57,15 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
             (None, Some(prim_path), what)
         }
         D::UnresolvedPrimPath { arc, target_layer, prim_path, introduced_by, site_path } => {
-            let what = format!("the {} layer @{target_layer}@ has no prim {prim_path}; it is left out", arc_name(*arc));
+            let what = match (arc, target_layer == introduced_by) {
+                (ArcType::Reference, true) => {
+                    format!("its internal reference to <{prim_path}> finds no prim there; it is left out")
+                }
+                (ArcType::Payload, true) => {
+                    format!("its internal payload <{prim_path}> finds no prim there; it is left out")
+                }
+                _ => format!("the {} layer @{target_layer}@ has no prim {prim_path}; it is left out", arc_name(*arc)),
+            };
             (Some(introduced_by), Some(site_path), what)
         }
         D::UnresolvedDefaultPrim { layer_id, arc, site_path } => {

@@ -12,6 +12,7 @@ use openusd::usd::Prim;
 use super::cards::{self, Picture};
 use super::inherit::{Context, Pose};
 use super::kinds::{Kind, Role};
+use super::per_instance::Each;
 use super::shape::{self, Built, Quad, StandIn};
 use super::stage::Reading;
 use super::walk::{Leaf, Shown, Walk};
@@ -102,7 +103,10 @@ pub(super) fn replace(
         })
     });
     let (leaf, path, asset) = (leaf.clone(), prim.path().clone(), context.asset.clone());
-    walk.show(Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None }, shown);
+    walk.show(
+        Shown { leaf, path, pose: context.pose.clone(), asset, scope: None, color: None, each: Each::default() },
+        shown,
+    );
     true
 }
 

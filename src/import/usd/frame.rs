@@ -1,6 +1,8 @@
 //! How the settings of a render frame the picture, and what of the camera they turn off. What a product
 //! authors goes before what its settings say.
 
+use openusd::sdf::Path;
+
 use super::render::is_authored;
 use super::values::Values;
 use crate::desc::{CameraDesc, Conform};
@@ -27,6 +29,12 @@ impl<'a> Said<'a> {
     /// Whose `name` counts.
     pub fn of(&self, name: &str) -> Values<'a> {
         self.product.filter(|product| is_authored(product.prim, name)).unwrap_or(self.settings)
+    }
+
+    /// The first camera that is named.
+    pub fn camera(&self) -> Option<Path> {
+        let of = |values: Values<'_>| values.targets("camera").into_iter().next();
+        self.product.and_then(of).or_else(|| of(self.settings))
     }
 
     /// Width of a pixel over its height.
@@ -129,8 +137,7 @@ mod tests {
         assert_eq!((desc.pixel_aspect, desc.conform), (2.0, Conform::Crop));
         // From below as it stands there, from above here.
         assert_eq!(desc.window, Some([0.25, 0.0, 1.0, 0.5]));
-        assert!(said.contains("/Q: is not a picture of its own"), "{said}");
-        assert!(said.contains("resolution"), "{said}");
+        assert!(said.contains("/Q: is not rendered: its resolution, pixelAspectRatio are not those of /P"), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
 

@@ -10,6 +10,7 @@ use openusd::sdf::Path;
 use super::bindings::{self, Bindings, Scope};
 use super::inherit::{Clock, Pose};
 use super::light::ShapeLight;
+use super::per_instance::Each;
 use super::shape::tint::Tint;
 use super::shape::{self, Source};
 use super::skel;
@@ -68,6 +69,8 @@ pub(super) struct Found {
     pub asset: Option<Arc<str>>,
     /// Where it has no colours of its own.
     pub color: Option<Tint>,
+    /// The instances of point instancers that it is in.
+    pub each: Each,
 }
 
 impl Found {
@@ -133,7 +136,8 @@ impl<'r, 'a> Gatherer<'r, 'a> {
                 look
             });
             if let Some(look) = look {
-                found.push(Found { look, path: one.path, pose: one.pose, asset: one.asset, color: one.color });
+                let Shown { path, pose, asset, color, each, .. } = one;
+                found.push(Found { look, path, pose, asset, color, each });
             }
         }
     }

@@ -10,6 +10,7 @@ use openusd::usd::{Prim, TimeCode};
 use super::flow::{self, Flow, vector};
 use super::inherit::{Context, Mover, Pose};
 use super::layer;
+use super::per_instance::{Each, PerInstance};
 use super::shape::tint::{self, Tint};
 use super::stage::Reading;
 use super::walk::{Shown, Walk};
@@ -37,6 +38,7 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         return reading.warn(prim.path(), what);
     };
     let colors = tint::of_instances(reading, prim, count);
+    let values = PerInstance::of(reading, prim, count);
     let places = layout.at(reading.time);
     let motion = motion(walk, prim, &layout);
     let mask = mask(reading, prim, count);
@@ -52,10 +54,12 @@ pub(super) fn walk(walk: &mut Walk<'_, '_>, prim: &Prim, context: &Context, show
         let moved = motion.as_ref().map(|at| at.iter().map(|places| places[i]).collect());
         let place = context.pose.place(&Pose { motion: moved, ..Pose::still(places[i]) });
         let color = colors.as_ref().map(|colors| colors[i]).or(prototype.color);
+        let each = Each::one(values.as_ref(), i);
         for inner in prototype.shown.iter() {
             let pose = place.place(&inner.pose);
             let asset = inner.asset.clone().or_else(|| context.asset.clone());
-            walk.show(Shown { pose, asset, color: inner.color.or(color), ..inner.clone() }, shown);
+            let each = inner.each.within(&each);
+            walk.show(Shown { pose, asset, color: inner.color.or(color), each, ..inner.clone() }, shown);
         }
     }
     if lost > 0 {

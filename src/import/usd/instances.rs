@@ -9,6 +9,7 @@ use openusd::sdf::Path;
 use super::gather::Found;
 use super::inherit::moving;
 use super::light::{self, GeometryLight, Profiles, ShapeLight, Shaped};
+use super::per_instance;
 use super::shape::Built;
 use super::shapes::{Dressed, Shapes};
 use super::stage::Reading;
@@ -75,6 +76,7 @@ pub(super) fn place(
         }));
     }
     let mut names = Names::default();
+    let mut values = per_instance::Known::default();
     let mut shining = HashMap::new();
     for (number, found) in found.iter().enumerate() {
         let Some(dressed) = shapes.by_look.get(&found.key()) else { continue };
@@ -109,7 +111,7 @@ pub(super) fn place(
             materials,
             color: found.color.filter(|_| takes_color),
             object_index: number as u32 + 1,
-            info: ObjectInfo::default(),
+            info: ObjectInfo { attributes: values.of(reading, found, &dressed.named), ..ObjectInfo::default() },
             visibility: Visibility::ALL,
             links: light.map_or_else(LightLinks::default, |light| light.links.clone()),
             shaped: shaped.map(|shaped| shaped.placed(&found.pose.world).into()),

@@ -81,7 +81,8 @@ pub(super) fn instance(walk: &mut Walk<'_, '_>, prim: &Prim, context: Context, s
         let asset = inner.asset.clone().or_else(|| context.asset.clone());
         let pose = context.pose.place(&inner.pose);
         let color = inner.color.or(color);
-        walk.show(Shown { leaf: inner.leaf.clone(), path, pose, asset, scope: Some(scope), color }, shown);
+        let each = inner.each.clone();
+        walk.show(Shown { leaf: inner.leaf.clone(), path, pose, asset, scope: Some(scope), color, each }, shown);
     }
 }
 

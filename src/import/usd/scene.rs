@@ -13,7 +13,7 @@ use super::light::Profiles;
 use super::material::Materials;
 use super::stage::Reading;
 use super::walk::Placed;
-use super::{camera, crew, instances, light, pulse, render, shapes, stamp, units, variants};
+use super::{camera, crew, instances, light, per_instance, pulse, render, shapes, stamp, units, variants};
 use crate::desc::{RenderDesc, SceneDesc};
 use crate::error::Result;
 
@@ -29,7 +29,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     pulse::rest();
     let mut images = Images::default();
     let shape_lights = lights_and_cameras(reading, &haul, &mut images, &mut scene);
-    let mut materials = Materials::new(reading, images);
+    let mut materials = Materials::new(reading, images, per_instance::pairs(&haul.found));
     materials.preload(haul.found.iter().flat_map(|found| found.look.materials()).collect::<BTreeSet<_>>());
     let Haul { found, shapes, times } = haul;
     let shapes = shapes::build(reading, &found, shapes, &mut materials);
@@ -128,7 +128,8 @@ fn lights_and_cameras(reading: &Reading<'_>, haul: &Haul, images: &mut Images, s
              from the start. File > Export > Penumbra keeps them",
             lost.join(", ")
         );
-        reading.warnings.borrow_mut().push(&reading.place, what);
+        // Most lamps have nothing to lose, and the file does not say which do.
+        reading.warnings.borrow_mut().note(&reading.place, what);
     }
     for found in &haul.found {
         let look = &found.look;

@@ -1,6 +1,7 @@
 //! Shapes, built on all threads: each once for what its materials want of it, however often it is placed.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use openusd::sdf::Path;
 use openusd_schemas::geom::Primvar;
@@ -20,6 +21,8 @@ pub(super) struct Dressed {
     pub materials: Vec<Option<u32>>,
     /// True where those show the colour of the shape or, where it has none, of the instance.
     pub takes_color: bool,
+    /// Primvars that those read by name.
+    pub named: Vec<Arc<str>>,
 }
 
 /// All shapes, and how each look is made of them.
@@ -30,6 +33,9 @@ pub(super) struct Shapes {
     /// Of looks in places with a colour and without.
     pub by_look: HashMap<(*const Look, bool), Dressed>,
 }
+
+/// With so many meshes one is compared that look alike at first sight.
+const MOST_ALIKE: usize = 16;
 
 /// A shape to be built.
 struct Job {
@@ -50,6 +56,8 @@ pub(super) fn build(
     let mut jobs: Vec<Job> = Vec::new();
     let mut known: HashMap<((usize, usize), Wants), usize> = HashMap::new();
     let mut alike: HashMap<(Likeness, Wants), usize> = HashMap::new();
+    // Assets that are referenced again and again without being instances.
+    let mut same_meshes: HashMap<(u64, Wants), Vec<usize>> = HashMap::new();
     for one in found {
         let key = one.key();
         let Some(look) = &one.look.shape else { continue };
@@ -58,7 +66,7 @@ pub(super) fn build(
         }
         let slots = slots(&one.look, look, materials);
         let wants = wants(materials, &slots, one.color.is_some());
-        let takes_color = wants.display_color;
+        let (takes_color, named) = (wants.display_color, wants.named.clone());
         let shape = *known.entry((look.shape, wants.clone())).or_insert_with(|| {
             let read = reads.get_mut(look.shape.0).and_then(|batch| batch.get_mut(look.shape.1));
             let source = read.and_then(|read| {
@@ -71,14 +79,25 @@ pub(super) fn build(
             });
             let prim = one.look.prim.clone();
             let likeness = source.as_ref().and_then(Source::likeness);
-            let number = likeness.map_or(jobs.len(), |l| *alike.entry((l, wants.clone())).or_insert(jobs.len()));
+            let number = match (likeness, source.as_ref().and_then(|source| Some((source, source.digest()?)))) {
+                (Some(likeness), _) => *alike.entry((likeness, wants.clone())).or_insert(jobs.len()),
+                (None, Some((source, digest))) => {
+                    let same = same_meshes.entry((digest, wants.clone())).or_default();
+                    let is_same = |job: &Job| job.source.as_ref().is_some_and(|known| known.is_same_mesh(source));
+                    same.iter().rev().take(MOST_ALIKE).copied().find(|&job| is_same(&jobs[job])).unwrap_or_else(|| {
+                        same.push(jobs.len());
+                        jobs.len()
+                    })
+                }
+                (None, None) => jobs.len(),
+            };
             match jobs.get_mut(number) {
                 Some(job) => job.prims.push(prim),
                 None => jobs.push(Job { source, wants, prims: vec![prim] }),
             }
             number
         });
-        shapes.by_look.insert(key, Dressed { shape, materials: slots, takes_color });
+        shapes.by_look.insert(key, Dressed { shape, materials: slots, takes_color, named });
     }
     let subdivision = reading.options.subdivision;
     let place = &reading.place;

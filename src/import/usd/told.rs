@@ -4,7 +4,7 @@ use openusd::sdf::{FieldKey, Path, Specifier, Value};
 use openusd::usd::SpecSite;
 
 use super::stage::Reading;
-use crate::error::Warnings;
+use crate::error::{Warning, Warnings};
 
 /// `told` with the layer where a prim is defined, or a property has its value, where that is not the root layer.
 pub(super) fn with_layers(reading: &Reading<'_>, told: Warnings) -> Warnings {
@@ -16,7 +16,7 @@ pub(super) fn with_layers(reading: &Reading<'_>, told: Warnings) -> Warnings {
         {
             place = place.at(format!("{} (in {layer})", place.node.as_deref().unwrap_or_default()));
         }
-        named.push(&place, warning.what.clone());
+        named.add(Warning { place, ..warning.clone() });
     }
     named
 }

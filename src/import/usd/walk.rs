@@ -12,11 +12,14 @@ use openusd_schemas::geom::Primvar;
 use super::bindings::{Bindings, Scope};
 use super::inherit::{Clock, Context, Pose};
 use super::kinds::{Kind, Kinds, Role};
+use super::per_instance::Each;
 use super::prototypes::Prototypes;
 use super::shape::StandIn;
 use super::shape::tint::Tint;
 use super::stage::Reading;
-use super::{clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, pulse, schemas, skel, stamp};
+use super::{
+    clips, cycles, draw_mode, implied, instance_classes, instancer, prototypes, pulse, render, schemas, skel, stamp,
+};
 use crate::desc::Motion;
 use crate::math::DAffine3;
 
@@ -69,6 +72,8 @@ pub(super) struct Shown {
     pub scope: Option<Rc<Scope>>,
     /// The colour of the innermost of them that has one.
     pub color: Option<Tint>,
+    /// Which instances of point instancers with values of their own it is in, the innermost first.
+    pub each: Each,
 }
 
 /// A walk of the stage, or of a part of it.
@@ -194,6 +199,9 @@ impl<'r, 'a> Walk<'r, 'a> {
         }
         let kind = self.kinds.of(reading, prim);
         if kind.role == Role::Aside {
+            if &*kind.name == "RenderSettings" {
+                render::tell_of_unnamed(reading, prim.path());
+            }
             return None;
         }
         let is_instance = flag(prim, FieldKey::Instanceable) == Some(true)
@@ -267,7 +275,10 @@ impl<'r, 'a> Walk<'r, 'a> {
             skin,
         };
         let (path, asset) = (prim.path().clone(), inner.asset.clone());
-        self.show(Shown { leaf: Rc::new(leaf), path, pose, asset, scope: None, color: None }, shown);
+        self.show(
+            Shown { leaf: Rc::new(leaf), path, pose, asset, scope: None, color: None, each: Each::default() },
+            shown,
+        );
     }
 
     /// Adds one.

@@ -83,6 +83,7 @@ pub(super) fn eval(texture: &desc::Procedural, args: &[Value]) -> Value {
             let color = made::WhiteNoise { dimensions: dimensions(*of) }.color(p, args.number(1));
             rgb(color, color[0])
         }
+        desc::Procedural::Cell { dimensions } => splat(made::cell(p, *dimensions)),
         desc::Procedural::Gabor { flat } => {
             let sockets = made::GaborSockets {
                 scale: args.number(1),

@@ -27,7 +27,7 @@ pub use magic::Magic;
 pub use noise::{Noise, NoiseKind, NoiseSockets};
 pub use voronoi::{Scatter, Voronoi, VoronoiFeature, VoronoiMetric, VoronoiSockets, VoronoiValue};
 pub use wave::{Wave, WaveDirection, WaveProfile, WaveSockets};
-pub use white_noise::WhiteNoise;
+pub use white_noise::{WhiteNoise, cell};
 
 /// How many coordinates a texture reads: `w`; `x, y`; `x, y, z`; or `x, y, z, w`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

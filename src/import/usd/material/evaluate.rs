@@ -142,12 +142,16 @@ impl<'m, 'a> Evaluator<'m, 'a> {
                 let id = self.input(node, "in", [0.0; 4]);
                 Some(self.exprs.extract(id, place(output)?))
             }
+            "artistic_ior" => Some(pattern::artistic_ior(self, node, output == "extinction")),
             _ => pattern::compute(self, node),
         }
     }
 
     /// USD's texture coordinates in the primvar `name`.
     pub fn texcoord(&mut self, name: Arc<str>) -> Id {
+        if self.materials.per_instance.contains(&name) {
+            return self.exprs.push(Op::Primvar { name, fallback: [0.0, 0.0, 0.0, 1.0] });
+        }
         let set = self.materials.uv_set(name);
         self.exprs.push(Op::Uv { set, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] })
     }

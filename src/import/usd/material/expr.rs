@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::desc::graph::{Blend, Function, Leaf, Math, Procedural, Value as V};
+use crate::desc::graph::{Blend, Function, Leaf, Math, Procedural, Quantity, Space, Value as V};
 use crate::desc::{TextureRef, TextureTransform};
 
 /// An expression in an [`Exprs`].
@@ -48,6 +48,13 @@ pub(super) enum Op {
     Leaf(Leaf),
     /// A procedural texture.
     Procedural(Procedural, Vec<Id>),
+    /// A point or direction carried from one space to another, as graphs have them.
+    Transform {
+        quantity: Quantity,
+        from: Space,
+        to: Space,
+        value: Id,
+    },
     Apply(Function, Vec<Id>),
 }
 
@@ -104,7 +111,9 @@ impl Exprs {
                 (true, Op::Apply(_, args) | Op::Procedural(_, args)) => {
                     args.iter().for_each(|arg| needed[arg.0 as usize] = true)
                 }
-                (true, Op::Image { uv, .. }) => needed[uv.0 as usize] = true,
+                (true, Op::Image { uv: from, .. } | Op::Transform { value: from, .. }) => {
+                    needed[from.0 as usize] = true
+                }
                 _ => {}
             }
         }
@@ -113,7 +122,7 @@ impl Exprs {
 
     /// True where `root` goes by what is known of the hit.
     pub fn has_leaf(&self, root: Id) -> bool {
-        self.needed(root).into_iter().any(|id| matches!(self.op(id), Op::Leaf(_)))
+        self.needed(root).into_iter().any(|id| matches!(self.op(id), Op::Leaf(_) | Op::Transform { .. }))
     }
 
     pub fn math(&mut self, math: Math, args: &[Id]) -> Id {

@@ -35,14 +35,31 @@ pub(super) fn vector(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> 
     if towards { e.exprs.scale(value, -1.0) } else { value }
 }
 
+/// A direction of the world in the stage's axes.
+pub(super) fn world(e: &mut Evaluator<'_, '_>, leaf: Leaf) -> Id {
+    let value = e.exprs.push(Op::Leaf(leaf));
+    in_stage(e, value, true)
+}
+
 /// A point or direction of the world in the stage's own axes; points in its units, too.
-fn in_stage(e: &mut Evaluator<'_, '_>, value: Id, is_direction: bool) -> Id {
+pub(super) fn in_stage(e: &mut Evaluator<'_, '_>, value: Id, is_direction: bool) -> Id {
     let reading = e.materials.reading;
     let mut back = reading.to_world.inverse();
     if is_direction {
         back.matrix3 *= reading.meters;
     }
-    let m = back.matrix3.transpose();
+    turned(e, value, back.matrix3)
+}
+
+/// And back.
+pub(super) fn out_of_stage(e: &mut Evaluator<'_, '_>, value: Id, is_direction: bool) -> Id {
+    let reading = e.materials.reading;
+    let meters = if is_direction { reading.meters } else { 1.0 };
+    turned(e, value, reading.to_world.matrix3 * meters.recip())
+}
+
+fn turned(e: &mut Evaluator<'_, '_>, value: Id, by: DMat3) -> Id {
+    let m = by.transpose();
     if m == DMat3::IDENTITY {
         return value;
     }

@@ -54,6 +54,10 @@ impl Lowering {
                 let args = args.iter().map(|arg| self.at(*arg)).collect();
                 self.graph.push(graph::Op::Procedural(*texture, args))
             }
+            Op::Transform { quantity, from, to, value } => {
+                let value = self.at(*value);
+                self.graph.transform(*quantity, *from, *to, value)
+            }
             Op::Apply(function, args) => {
                 let args: Vec<ValueId> = args.iter().map(|arg| self.at(*arg)).collect();
                 self.graph.apply(function.clone(), &args)
@@ -97,6 +101,7 @@ impl Lowering {
                 Op::Primvar { fallback, .. } => *fallback,
                 // Anywhere, seen from ahead; signed noise is 0 in the mean.
                 Op::Leaf(_) | Op::Procedural(..) => [0.0, 0.0, 0.0, 1.0],
+                Op::Transform { value, .. } => known[value],
                 Op::Apply(function, args) => {
                     let args: Vec<Value> = args.iter().map(|arg| known[arg]).collect();
                     function.eval(&args)

@@ -17,14 +17,17 @@ mod models;
 mod mtlx;
 mod network;
 mod pattern;
+mod ramps;
+mod random;
 mod shade;
+mod spaces;
 mod surface;
 mod texture;
 
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use openusd::sdf;
@@ -81,10 +84,12 @@ pub(super) struct Materials<'a> {
     /// Networks that were gathered ahead, in the order in which they are tried.
     gathered: HashMap<sdf::Path, Vec<Found>>,
     udims: HashMap<(String, bool), Result<Tiled, String>>,
+    /// Primvars of two numbers that instances have values of their own of: no UV set can hold them.
+    per_instance: BTreeSet<Arc<str>>,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(reading: &'a Reading<'a>, images: Images) -> Self {
+    pub fn new(reading: &'a Reading<'a>, images: Images, per_instance: BTreeSet<Arc<str>>) -> Self {
         Self {
             reading,
             images,
@@ -95,6 +100,7 @@ impl<'a> Materials<'a> {
             unbound: None,
             gathered: HashMap::new(),
             udims: HashMap::new(),
+            per_instance,
         }
     }
 
@@ -173,7 +179,8 @@ impl<'a> Materials<'a> {
             // Whatever its graph looks up: a tilt has to go by something.
             None => graph_uv_sets(material).next().unwrap_or(0),
         });
-        normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0))
+        let named = material.graph.ops().contains(&Op::Leaf(Leaf::Tangent)).then_some(0);
+        normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0)).or(named)
     }
 
     /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.

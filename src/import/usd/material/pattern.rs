@@ -2,7 +2,7 @@
 
 use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
-use super::geometry;
+use super::{geometry, ramps, random, spaces};
 use crate::desc::graph::{Function as F, Math};
 
 /// Names of the inputs of a function, with their defaults.
@@ -128,6 +128,20 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
             let (top, bottom) = (e.exprs.mix(corner[0], corner[1], u), e.exprs.mix(corner[2], corner[3], u));
             e.exprs.mix(bottom, top, v)
         }
+        "ramp" => ramps::ramp(e, node),
+        "ramp_gradient" => ramps::interval(e, node),
+        "transformpoint" | "transformvector" | "transformnormal" => spaces::transform(e, node, category),
+        "tangent" | "bitangent" => spaces::tangent(e, node, category),
+        "facingratio" => spaces::facing_ratio(e, node),
+        "triplanarprojection" => spaces::triplanar(e, node)?,
+        "cellnoise2d" | "cellnoise3d" => random::cell_noise(e, node, category),
+        "randomfloat" => random::random_float(e, node),
+        "randomcolor" => random::random_color(e, node),
+        "blackbody" => {
+            let kelvin = e.scalar(node, "temperature", 5000.0);
+            e.exprs.apply(F::Blackbody, &[kelvin])
+        }
+        "premult" | "unpremult" => with_alpha(e, node, category == "premult"),
         "position" | "normal" | "viewdirection" => geometry::vector(e, node, category),
         "noise2d" | "noise3d" | "fractal2d" | "fractal3d" if count == 1 => geometry::noise(e, node, category),
         "checkerboard" => geometry::checkerboard(e, node),
@@ -158,6 +172,45 @@ fn count(kind: &str) -> u8 {
         "float" | "integer" => 1,
         _ => 3,
     }
+}
+
+/// A color times its alpha, or without it; alpha itself stays.
+fn with_alpha(e: &mut Evaluator<'_, '_>, node: usize, multiplies: bool) -> Id {
+    let color = e.input(node, "in", [0.0, 0.0, 0.0, 1.0]);
+    let alpha = e.exprs.extract(color, 3);
+    let math = if multiplies { Math::Multiply } else { Math::Divide };
+    let changed = e.exprs.math(math, &[color, alpha]);
+    let mut parts = [0, 1, 2].map(|place| e.exprs.extract(changed, place)).to_vec();
+    parts.push(alpha);
+    e.exprs.apply(F::Combine, &parts)
+}
+
+/// The index of refraction or the extinction of a metal that reflects `reflectivity`, and `edge_color` at its edge
+/// (O. Gulbrandsen, "Artist friendly metallic Fresnel", JCGT 3(4), 2014).
+pub(super) fn artistic_ior(e: &mut Evaluator<'_, '_>, node: usize, extinction: bool) -> Id {
+    let color = e.input(node, "reflectivity", [0.944, 0.776, 0.373, 1.0]);
+    let edge = e.input(node, "edge_color", [0.998, 0.981, 0.751, 1.0]);
+    let x = &mut e.exprs;
+    let (zero, one, most) = (x.number(0.0), x.number(1.0), x.number(0.99));
+    let r = x.math(Math::Clamp, &[color, zero, most]);
+    let root = x.apply(F::Math(Math::Sqrt), &[r]);
+    let (rest, all) = (x.subtract(one, r), x.add(one, r));
+    let (least, largest) = (x.subtract(one, root), x.add(one, root));
+    let (low, high) = (x.math(Math::Divide, &[rest, all]), x.math(Math::Divide, &[largest, least]));
+    let ior = x.mix(high, low, edge);
+    if !extinction {
+        return ior;
+    }
+    let [above, below] = [1.0, -1.0].map(|by| {
+        let by = x.number(by);
+        let sum = x.add(ior, by);
+        x.multiply(sum, sum)
+    });
+    let scaled = x.multiply(above, r);
+    let over = x.subtract(scaled, below);
+    let squared = x.math(Math::Divide, &[over, rest]);
+    let squared = x.math(Math::Maximum, &[squared, zero]);
+    x.apply(F::Math(Math::Sqrt), &[squared])
 }
 
 fn luminance(e: &mut Evaluator<'_, '_>, node: usize, color: Id) -> Id {

@@ -50,11 +50,12 @@ pub(super) fn usd(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
         // "useMetadata" is black for files without; of what is read here none has any.
         _ => Wrap::Black,
     });
-    let wish = Wish { file: file(e, node), space, uv, wrap, filter: Filter::Linear };
+    let wish = Wish { file: file(e, node, "file"), space, uv, wrap, filter: Filter::Linear };
     let texel = match look_up(e, node, &wish) {
         Ok(texel) => texel,
         Err(what) => {
-            let [r, g, b, a] = e.exprs.known(fallback).unwrap_or_default();
+            // In the precision in which it is authored.
+            let [r, g, b, a] = e.exprs.known(fallback).unwrap_or_default().map(|x| x as f32);
             e.warn(node, format!("{what}; its fallback ({r}, {g}, {b}, {a}) is used"));
             return Some(fallback);
         }
@@ -83,9 +84,14 @@ pub(super) fn image(e: &mut Evaluator<'_, '_>, node: usize, tiled: bool) -> Opti
 
 /// The image of a node that has the inputs of `image`, at `uv`, as a value of the type `kind`.
 pub(super) fn image_at(e: &mut Evaluator<'_, '_>, node: usize, uv: Id, kind: &str) -> Option<Id> {
+    named_image_at(e, node, "file", uv, kind)
+}
+
+/// The same of a node with several files, of which the input `name` is one.
+pub(super) fn named_image_at(e: &mut Evaluator<'_, '_>, node: usize, name: &str, uv: Id, kind: &str) -> Option<Id> {
     let data = e.node(node);
     let default = e.input(node, "default", [0.0; 4]);
-    let named = data.inputs.get("file").and_then(|file| file.color_space.as_deref()).unwrap_or_default();
+    let named = data.inputs.get(name).and_then(|file| file.color_space.as_deref()).unwrap_or_default();
     let is_color = kind.starts_with("color");
     let (space, rest) = match color::decoding(named) {
         Some(_) if !is_color => (Space::Raw, ""),
@@ -103,7 +109,7 @@ pub(super) fn image_at(e: &mut Evaluator<'_, '_>, node: usize, uv: Id, kind: &st
         _ => Wrap::Repeat,
     });
     let filter = if data.text("filtertype") == Some("closest") { Filter::Nearest } else { Filter::Linear };
-    let wish = Wish { file: file(e, node), space, uv, wrap, filter };
+    let wish = Wish { file: file(e, node, name), space, uv, wrap, filter };
     match look_up(e, node, &wish) {
         // A number is the first channel.
         Ok(texel) if kind == "float" => Some(e.exprs.extract(texel, 0)),
@@ -115,8 +121,8 @@ pub(super) fn image_at(e: &mut Evaluator<'_, '_>, node: usize, uv: Id, kind: &st
     }
 }
 
-fn file<'m>(e: &Evaluator<'m, '_>, node: usize) -> Option<&'m File> {
-    match &e.node(node).inputs.get("file")?.value {
+fn file<'m>(e: &Evaluator<'m, '_>, node: usize, name: &str) -> Option<&'m File> {
+    match &e.node(node).inputs.get(name)?.value {
         Some(Value::File(file)) => Some(file),
         _ => None,
     }

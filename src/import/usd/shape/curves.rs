@@ -109,17 +109,6 @@ pub(super) fn read(
         primvars.color.iter_mut().for_each(Data::at_joints);
         primvars.opacity.iter_mut().for_each(Data::at_joints);
     }
-    let odd = |count: &&i32| match (basis, wrap) {
-        (Basis::Bezier, Wrap::Closed) => **count % 3 != 0,
-        (Basis::Bezier, _) => **count < 4 || **count % 3 != 1,
-        (Basis::Linear, _) => **count < 2,
-        (_, Wrap::Pinned) => **count < 2,
-        _ => **count < 4,
-    };
-    let odd = counts.iter().filter(odd).count();
-    if odd > 0 {
-        reading.warn(prim.path(), format!("{odd} curves have a number of points that their basis has no use for"));
-    }
     Some(Curves { points, counts, basis, wrap, widths, primvars, motion, from_hermite })
 }
 
@@ -152,10 +141,19 @@ impl Curves {
         let Self { mut points, counts, basis, wrap, widths, primvars, motion, .. } = self;
         let bad = mend_points(&mut points);
         let curves = lay_out(&counts, points.len(), basis, wrap, place, warnings);
+        let LaidOut { curves, are_all } = curves;
+        if curves.iter().all(|curve| curve.segments() == 0) {
+            return None;
+        }
         let joints = curves.last().map_or(0, |curve| curve.joints.end);
         let sizes = Counts { faces: counts.len(), joints, points: points.len(), corners: joints };
-        let widths = widths.and_then(|data| data.fit(&sizes, place, warnings));
-        let mut channels = Channels::new(primvars, &sizes, wants, place, warnings);
+        // Values for curves that are left out can't fit, which is not to be told once more.
+        let mut of_values = Warnings::new();
+        let widths = widths.and_then(|data| data.fit(&sizes, place, &mut of_values));
+        let mut channels = Channels::new(primvars, &sizes, wants, place, &mut of_values);
+        if are_all {
+            warnings.extend(of_values);
+        }
         let normals = channels.normals.take();
         let mut lines: Vec<(usize, Vec<Joint>)> = Vec::with_capacity(curves.len());
         let mut dropped = 0;
@@ -259,17 +257,17 @@ impl Set<'_> {
     }
 }
 
+/// Curves, and whether they are all that were authored.
+struct LaidOut {
+    curves: Vec<Curve>,
+    are_all: bool,
+}
+
 /// Which points each curve has, and which varying values.
-fn lay_out(
-    counts: &[i32],
-    points: usize,
-    basis: Basis,
-    wrap: Wrap,
-    place: &Place,
-    warnings: &mut Warnings,
-) -> Vec<Curve> {
+fn lay_out(counts: &[i32], points: usize, basis: Basis, wrap: Wrap, place: &Place, warnings: &mut Warnings) -> LaidOut {
     let mut curves = Vec::with_capacity(counts.len());
-    let (mut start, mut joints, mut short) = (0, 0, 0);
+    let (mut start, mut joints, mut short, mut odd) = (0, 0, 0, 0);
+    let spare = |count: i32| basis == Basis::Bezier && count % 3 != i32::from(wrap != Wrap::Closed);
     for (i, &count) in counts.iter().enumerate() {
         let end = start + usize::try_from(count).unwrap_or(0);
         if end > points {
@@ -278,14 +276,20 @@ fn lay_out(
             break;
         }
         let curve = Curve::new(start..end, joints, basis, wrap);
-        short += u32::from(curve.segments() == 0);
+        match curve.segments() {
+            0 => short += 1,
+            _ => odd += u32::from(spare(count)),
+        }
         (start, joints) = (end, curve.joints.end);
         curves.push(curve);
     }
     if short > 0 {
         warnings.push(place, format!("{short} curves have too few points for their basis; they are left out"));
     }
-    curves
+    if odd > 0 {
+        warnings.push(place, format!("{odd} curves have a number of points that their basis has no use for"));
+    }
+    LaidOut { are_all: curves.len() == counts.len() && short == 0, curves }
 }
 
 /// The joints of a curve: close enough where it bends.

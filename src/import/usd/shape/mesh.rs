@@ -1,5 +1,7 @@
 //! UsdGeomMesh, and the surface of UsdGeomTetMesh.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use openusd::sdf::Value;
 use openusd::tf::Token;
 use openusd::usd::Prim;
@@ -18,6 +20,7 @@ use crate::desc::Motion;
 use crate::error::{Place, Warnings};
 
 /// A mesh as authored.
+#[derive(PartialEq)]
 pub(in super::super) struct Mesh {
     points: Vec<[f32; 3]>,
     counts: Vec<i32>,
@@ -145,6 +148,15 @@ pub(super) fn is_left_handed(reading: &Reading<'_>, prim: &Prim) -> bool {
 }
 
 impl Mesh {
+    /// The same for meshes that are equal, and cheap: for others seldom.
+    pub fn digest(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (self.counts.len(), self.indices.len(), self.flipped).hash(&mut hasher);
+        primvar::digest(&self.points, &mut hasher);
+        self.primvars.digest(&mut hasher);
+        hasher.finish()
+    }
+
     pub fn build(self, wants: &Wants, depth: u32, place: &Place, warnings: &mut Warnings) -> Option<Built> {
         let Self { mut points, counts, indices, holes, flipped, rules, primvars, subsets, motion } = self;
         let corners = counts.iter().map(|&count| usize::try_from(count).unwrap_or(0)).sum();

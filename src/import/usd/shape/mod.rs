@@ -82,6 +82,22 @@ impl Source {
         }
     }
 
+    /// The same for meshes that may be equal; `None` for what is no mesh.
+    pub fn digest(&self) -> Option<u64> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.digest()),
+            _ => None,
+        }
+    }
+
+    /// True for meshes that are equal.
+    pub fn is_same_mesh(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Mesh(a), Self::Mesh(b)) => a == b,
+            _ => false,
+        }
+    }
+
     /// Reads the primvars that graphs ask for by `names`, and keeps them with the shape of `prim`, which inherits
     /// `inherited`.
     pub fn read_named(&mut self, reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], names: &[Arc<str>]) {

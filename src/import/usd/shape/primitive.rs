@@ -41,11 +41,13 @@ pub(in super::super) struct Likeness(Discriminant<Shape>, Axis, [u64; 3]);
 /// The primitive `prim` of schema `kind`, and its sizes while the shutter is open; `None` for other kinds, and,
 /// with a warning, for one without extent.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], kind: &str) -> Option<Primitive> {
-    let (mut lacking, mut negative) = (Vec::new(), Vec::new());
+    let (mut lacking, mut negative, mut flat) = (Vec::new(), Vec::new(), Vec::new());
     let shape = shape(kind, |name| match reading.value::<f64>(prim, name).filter(|v| v.is_finite()) {
         Some(size) => {
             if size < 0.0 {
                 negative.push(name);
+            } else if size == 0.0 {
+                flat.push(name);
             }
             size.abs()
         }
@@ -66,7 +68,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], ki
         reading.warn(prim.path(), what);
     }
     if !shape.has_extent() {
-        reading.warn(prim.path(), "the shape has no extent; it is left out");
+        reading.warn(prim.path(), format!("its {} is 0; the shape is left out", flat.join(" and ")));
         return None;
     }
     let axis = match shape {

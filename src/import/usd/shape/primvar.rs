@@ -1,6 +1,7 @@
 //! Primvars: how values lie on a shape.
 
 use std::collections::HashSet;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use openusd::sdf::{Value, ValueKind};
@@ -25,7 +26,7 @@ pub(in super::super) struct Data<const N: usize> {
 }
 
 /// The values of a shape that rendering knows, its own and those it inherits.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Primvars {
     /// Everything that has two numbers.
     pub uvs: Vec<Data<2>>,
@@ -39,7 +40,7 @@ pub(super) struct Primvars {
 
 /// How many of what a shape has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Counts {
+pub(in super::super) struct Counts {
     pub faces: usize,
     /// For `varying`: the points of a mesh, the joints of curves.
     pub joints: usize,
@@ -49,7 +50,7 @@ pub(super) struct Counts {
 
 /// Values that fit a shape: as many places as its count says, and indices that are in range.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Channel<const N: usize> {
+pub(in super::super) struct Channel<const N: usize> {
     pub interpolation: Interpolation,
     pub values: Vec<[f32; N]>,
     pub indices: Option<Vec<u32>>,
@@ -107,7 +108,23 @@ pub(super) fn named(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], n
     names.iter().filter_map(found).collect()
 }
 
+/// Adds how many values there are, and a few of them.
+pub(super) fn digest<const N: usize>(values: &[[f32; N]], hasher: &mut impl Hasher) {
+    values.len().hash(hasher);
+    let some = values.iter().step_by((values.len() / 32).max(1)).flatten();
+    some.for_each(|x| x.to_bits().hash(hasher));
+}
+
 impl Primvars {
+    /// Adds a few of the values of each.
+    pub fn digest(&self, hasher: &mut impl Hasher) {
+        let Self { uvs, color, opacity, normals, widths, named } = self;
+        uvs.iter().for_each(|data| digest(&data.values, hasher));
+        color.iter().chain(normals).for_each(|data| digest(&data.values, hasher));
+        opacity.iter().chain(widths).for_each(|data| digest(&data.values, hasher));
+        named.iter().for_each(|data| digest(&data.values, hasher));
+    }
+
     /// True where nothing was found.
     pub fn is_empty(&self) -> bool {
         let Self { uvs, color, opacity, normals, widths, named } = self;
@@ -143,17 +160,22 @@ fn keep<T>(slot: &mut Option<T>, value: Option<T>) -> bool {
     found
 }
 
-fn has_two_numbers(primvar: &Primvar) -> bool {
+/// True for values of two numbers, which may be texture coordinates.
+pub(in super::super) fn has_two_numbers(primvar: &Primvar) -> bool {
     use ValueKind as K;
     let kind = primvar.attribute().type_name().ok().flatten().and_then(|name| name.kind());
     matches!(kind, Some(K::Vec2f | K::Vec2d | K::Vec2h | K::Vec2fVec | K::Vec2dVec | K::Vec2hVec))
 }
 
 /// How an attribute converts to numbers.
-pub(super) type Convert<const N: usize> = fn(Value) -> Option<Vec<[f32; N]>>;
+pub(in super::super) type Convert<const N: usize> = fn(Value) -> Option<Vec<[f32; N]>>;
 
 /// The values of `primvar`; `None` where it has none.
-pub(super) fn data<const N: usize>(reading: &Reading<'_>, primvar: &Primvar, convert: Convert<N>) -> Option<Data<N>> {
+pub(in super::super) fn data<const N: usize>(
+    reading: &Reading<'_>,
+    primvar: &Primvar,
+    convert: Convert<N>,
+) -> Option<Data<N>> {
     let mut data = array(reading, primvar.attribute(), convert, Interpolation::Constant)?;
     data.name = primvar.primvar_name().into();
     data.stride = primvar.element_size().ok().and_then(|size| usize::try_from(size).ok()).unwrap_or(1).max(1);
@@ -199,7 +221,7 @@ impl<const N: usize> Data<N> {
     }
 
     /// Holds the values against the counts of the shape; `None`, with a warning, where there are too few.
-    pub(super) fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
+    pub(in super::super) fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
         let Self { name, interpolation, mut values, indices, stride } = self;
         if stride > 1 {
             values = values.into_iter().step_by(stride).collect();

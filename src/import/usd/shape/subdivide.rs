@@ -17,6 +17,7 @@ use crate::import::subdivision::{Boundary, Cage, FaceVarying, Faces, Refinement,
 const MOST_FACES: u64 = 1 << 25;
 
 /// How a mesh is subdivided.
+#[derive(PartialEq)]
 pub(super) struct Rules {
     scheme: Scheme,
     boundary: Boundary,

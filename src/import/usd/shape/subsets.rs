@@ -14,6 +14,13 @@ pub(super) struct Subsets {
     pub faces: Vec<Vec<i32>>,
 }
 
+impl PartialEq for Subsets {
+    /// True for those of the same faces, whatever they are called.
+    fn eq(&self, other: &Self) -> bool {
+        self.faces == other.faces
+    }
+}
+
 fn of_materials(reading: &Reading<'_>, prim: &Prim) -> impl Iterator<Item = Prim> {
     prim.children().unwrap_or_default().into_iter().filter(|child| {
         child.type_name().ok().flatten().is_some_and(|kind| kind == "GeomSubset")

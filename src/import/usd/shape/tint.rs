@@ -17,6 +17,20 @@ pub(in super::super) type Tint = [f32; 4];
 const COLOR: &str = "displayColor";
 const OPACITY: &str = "displayOpacity";
 
+/// True for the primvars that are read here.
+pub(in super::super) fn is_one(name: &str) -> bool {
+    matches!(name, COLOR | OPACITY)
+}
+
+/// What a graph that asks for the primvar `name` gets of an instance's color.
+pub(in super::super) fn named([r, g, b, a]: Tint, name: &str) -> Option<[f32; 4]> {
+    match name {
+        COLOR => Some([r, g, b, 1.0]),
+        OPACITY => Some([a; 4]),
+        _ => None,
+    }
+}
+
 /// The color of each of the `count` instances of the point instancer `prim`, whose primvars are those of a
 /// cloud of points with one for each instance; what its prototypes author themselves goes before it.
 pub(in super::super) fn of_instances(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<Tint>> {
@@ -33,7 +47,7 @@ pub(in super::super) fn inherited(reading: &Reading<'_>, primvars: &[Primvar]) -
 
 /// `primvars` without what [`inherited`] reads.
 pub(in super::super) fn without(primvars: &Rc<Vec<Primvar>>) -> Rc<Vec<Primvar>> {
-    let tints = |primvar: &Primvar| matches!(primvar.primvar_name(), COLOR | OPACITY);
+    let tints = |primvar: &Primvar| is_one(primvar.primvar_name());
     if !primvars.iter().any(tints) {
         return primvars.clone();
     }

@@ -44,7 +44,7 @@ pub(in super::super) fn scalars(value: Value) -> Option<Vec<[f32; 1]>> {
 
 /// Whatever numbers there are, as graphs have them: a number in all four places, a vector or color with 1
 /// behind it.
-pub(super) fn graph_values(value: Value) -> Option<Vec<[f32; 4]>> {
+pub(in super::super) fn graph_values(value: Value) -> Option<Vec<[f32; 4]>> {
     use ValueKind as K;
     let numbers = |v: Vec<f32>| -> Vec<[f32; 4]> { v.into_iter().map(|v| [v; 4]).collect() };
     Some(match ValueKind::from(&value) {

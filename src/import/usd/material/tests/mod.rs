@@ -36,7 +36,7 @@ fn read_at(folder: &Path, text: &str, path: &str) -> Read {
     let options = ImportOptions::default();
     let reading = stage(folder, text, &options);
     let path = sdf::Path::new(path).unwrap();
-    let mut materials = Materials::new(&reading, Images::default());
+    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new());
     materials.preload([&path]);
     let index = materials.at(&path);
     assert_eq!(materials.at(&path), index);
@@ -92,6 +92,8 @@ fn value_of(m: &MaterialDesc, id: ValueId, texels: &[(u32, [f64; 4])]) -> [f64; 
             Op::Leaf(_) => [0.5; 4],
             Op::Image { texture, .. } => texels.iter().find(|(of, _)| of == texture).unwrap().1,
             Op::Apply(function, args) => function.eval(&args.iter().map(|arg| values[arg.index()]).collect::<Vec<_>>()),
+            // What any cell of noise may be.
+            Op::Procedural(crate::desc::graph::Procedural::Cell { .. }, _) => [0.25; 4],
             other => panic!("{other:?}"),
         });
     }

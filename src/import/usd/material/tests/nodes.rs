@@ -1,7 +1,8 @@
 //! Layers of MaterialX's surfaces, and nodes that go by where a surface is hit.
 
+use super::super::super::images::tests::png;
 use super::*;
-use crate::desc::graph::{Noise, NoiseKind, Procedural};
+use crate::desc::graph::{Leaf, Noise, NoiseKind, Op as GraphOp, Procedural, Quantity, Space};
 
 const STANDARD: &str = "ND_standard_surface_surfaceshader";
 const OPEN_PBR: &str = "ND_open_pbr_surface_surfaceshader";
@@ -153,9 +154,8 @@ fn noise_is_that_of_open_shading_language() {
     let fractal = noises("\"ND_fractal3d_float\" int inputs:octaves = 5");
     assert_eq!(fractal, (Some((plain, 4.0)), String::new()));
     assert_eq!(noises("\"ND_noise2d_float\"").0, Some((Noise { dimensions: 2, ..plain }, 0.0)));
-    // Cells go by another hash than ours.
-    let (none, said) = noises("\"ND_cellnoise3d_float\"");
-    assert!(none.is_none() && said.contains("node \"cellnoise3d\" isn't computed"), "{said}");
+    let (none, said) = noises("\"ND_worleynoise3d_float\"");
+    assert!(none.is_none() && said.contains("node \"worleynoise3d\" isn't computed"), "{said}");
 }
 
 #[test]
@@ -174,4 +174,259 @@ fn an_opacity_mode_that_is_not_obeyed_is_told() {
     assert!(said(asked).contains("opacityMode \"transparent\" is rendered as \"presence\""));
     assert_eq!(said("float inputs:opacity = 0.4\ntoken inputs:opacityMode = \"presence\""), "");
     assert_eq!(said("token inputs:opacityMode = \"transparent\""), "");
+}
+
+/// The nodes' definitions in numbers; every leaf is 0.5 and its alpha, too.
+#[test]
+fn coats_darken_what_is_beneath() {
+    let lines = "color3f inputs:base_color = (0.8, 0.4, 0)
+         float inputs:base_weight = 0.5
+         float inputs:coat_weight = 0.5
+         float inputs:coat_ior = 1.6";
+    // K = 1 − (1 − F0) / η² of the coat, D = (1 − K) / (1 − E K), by half of which the color goes.
+    let f0: f64 = (0.6 / 2.6) * (0.6 / 2.6);
+    let leaves = (1.0 - f0) / (1.6 * 1.6);
+    let darkened = |albedo: f64, amount: f64| 1.0 + amount * (leaves / (1.0 - albedo * (1.0 - leaves)) - 1.0);
+    let read = mtlx(OPEN_PBR, lines, "");
+    let m = read.material();
+    let expected = [0.8, 0.4, 0.0].map(|c| 0.5 * c * darkened(c, 0.5));
+    same(&m.base_color.factor, &expected);
+    same(&m.specular_color.factor, &[0.8, 0.4, 0.0].map(|c| darkened(c, 0.5)));
+    same(&m.coat.unwrap().tint.factor, &[1.0; 3]);
+    assert_eq!(read.warnings, "");
+    let half = mtlx(OPEN_PBR, &format!("{lines}\nfloat inputs:coat_darkening = 0.5"), "");
+    same(&half.material().base_color.factor, &[0.8, 0.4, 0.0].map(|c| 0.5 * c * darkened(c, 0.25)));
+    let metal =
+        mtlx(OPEN_PBR, &format!("{lines}\nfloat inputs:base_metalness = 1\nfloat inputs:specular_weight = 0.5"), "");
+    same(&metal.material().base_color.factor, &[0.8, 0.4, 0.0].map(|c| 0.5 * c * darkened(0.5 * c, 0.5)));
+    let none = mtlx(OPEN_PBR, &format!("{lines}\nfloat inputs:coat_darkening = 0"), "");
+    same(&none.material().base_color.factor, &[0.4, 0.2, 0.0]);
+}
+
+#[test]
+fn ramps_have_up_to_ten_colors() {
+    let ramp = |more: &str| {
+        color_by(&format!(
+            "def Shader \"c\" {{ uniform token info:id = \"ND_ramp\"
+                color4f inputs:color1 = (1, 0, 0, 1)
+                color4f inputs:color2 = (0, 1, 0, 1)
+                color4f inputs:color3 = (0, 0, 1, 1)
+                float inputs:interval2 = 0.25
+                int inputs:num_intervals = 3
+                {more}
+                color4f outputs:out }}"
+        ))
+    };
+    // From green at 0.25 to blue at 1, a third of the way.
+    let linear = ramp("int inputs:interpolation = 0");
+    same(&linear.0[..3], &[0.0, 2.0 / 3.0, 1.0 / 3.0]);
+    assert_eq!(linear.1, "");
+    let share = (1.0 / 3.0) * (1.0 / 3.0) * (3.0 - 2.0 / 3.0);
+    same(&ramp("").0[..3], &[0.0, 1.0 - share, share]);
+    same(&ramp("int inputs:interpolation = 2").0[..3], &[0.0, 1.0, 0.0]);
+    // In the middle the distance from there is 0, and so is that to the nearest side.
+    same(&ramp("int inputs:type = 2").0[..3], &[1.0, 0.0, 0.0]);
+    same(&ramp("int inputs:type = 3").0[..3], &[1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn colors_go_with_and_without_their_alpha() {
+    let of = |node: &str| {
+        color_by(&format!(
+            "def Shader \"c\" {{ uniform token info:id = \"ND_{node}_color4\"
+                color4f inputs:in.connect = </m/p.outputs:out>
+                color4f outputs:out }}
+             def Shader \"p\" {{ uniform token info:id = \"ND_combine4_color4\"
+                float inputs:in1.connect = </m/q.outputs:outx>
+                float inputs:in2 = 0.25
+                float inputs:in3 = 0
+                float inputs:in4 = 0.5
+                color4f outputs:out }}
+             def Shader \"q\" {{ uniform token info:id = \"ND_separate3_vector3\"
+                vector3f inputs:in.connect = </m/r.outputs:out>
+                float outputs:outx }}
+             def Shader \"r\" {{ uniform token info:id = \"ND_position_vector3\"
+                vector3f outputs:out }}"
+        ))
+    };
+    same(&of("premult").0, &[0.25, 0.125, 0.0, 0.5]);
+    same(&of("unpremult").0, &[1.0, 0.5, 0.0, 0.5]);
+    assert_eq!(of("premult").1 + &of("unpremult").1, "");
+}
+
+/// A conductor of these reflects what was asked for: ((n − 1)² + k²) / ((n + 1)² + k²).
+#[test]
+fn artistic_indices_reflect_what_they_are_made_of() {
+    let output = |name: &str| {
+        color_by(&format!(
+            "def Shader \"c\" {{ uniform token info:id = \"ND_multiply_color3\"
+                color3f inputs:in1.connect = </m/a.outputs:{name}>
+                color3f outputs:out }}
+             def Shader \"a\" {{ uniform token info:id = \"ND_artistic_ior\"
+                color3f inputs:reflectivity.connect = </m/r.outputs:out>
+                color3f inputs:edge_color = (0.25, 0.5, 0.75)
+                color3f outputs:ior
+                color3f outputs:extinction }}
+             def Shader \"r\" {{ uniform token info:id = \"ND_position_vector3\"
+                vector3f outputs:out }}"
+        ))
+        .0
+    };
+    let (n, k) = (output("ior"), output("extinction"));
+    for i in 0..3 {
+        let k2 = k[i] * k[i];
+        same(&[((n[i] - 1.0).powi(2) + k2) / ((n[i] + 1.0).powi(2) + k2)], &[0.5]);
+    }
+}
+
+#[test]
+fn facing_ratios_are_cosines() {
+    let of = |more: &str| {
+        let nodes = format!(
+            "def Shader \"c\" {{ uniform token info:id = \"ND_facingratio_float\"
+                vector3f inputs:normal = (0, 0.6, 0.8)
+                vector3f inputs:viewdirection = (0, 0, -1)
+                {more}
+                float outputs:out }}"
+        );
+        let read = mtlx(OPEN_PBR, "float inputs:specular_roughness.connect = </m/c.outputs:out>", &nodes);
+        read.material().roughness.factor
+    };
+    same(&[of(""), of("bool inputs:invert = 1"), of("bool inputs:faceforward = 0")], &[0.8, 0.2, 0.8]);
+    // Of the hit itself: every leaf is 0.5 in all places.
+    let (own, said) = color_by(
+        "def Shader \"c\" { uniform token info:id = \"ND_facingratio_float\"
+            float outputs:out }",
+    );
+    same(&own[..1], &[0.75]);
+    assert_eq!(said, "");
+}
+
+/// Cells are 0.25 here; which cell it is are the arguments.
+#[test]
+fn random_values_are_cells_of_noise() {
+    let (color, said) = color_by(
+        "def Shader \"c\" { uniform token info:id = \"ND_randomcolor_float\"
+            float inputs:in = 0.5
+            float inputs:saturationlow = 0
+            int inputs:seed = 3
+            color3f outputs:out }",
+    );
+    // Hue and saturation of a quarter.
+    same(&color[..3], &[0.875, 1.0, 0.75]);
+    assert_eq!(said, "");
+    let read = mtlx(
+        OPEN_PBR,
+        "float inputs:specular_roughness.connect = </m/c.outputs:out>",
+        "def Shader \"c\" { uniform token info:id = \"ND_randomfloat_integer\"
+            int inputs:in = 4
+            int inputs:seed = 7
+            float inputs:max = 2
+            float outputs:out }",
+    );
+    let m = read.material();
+    same(&value_of(m, m.roughness.graph.unwrap(), &[]), &[0.5; 4]);
+    let cells: Vec<_> = m
+        .graph
+        .ops()
+        .iter()
+        .filter_map(|op| match op {
+            GraphOp::Procedural(Procedural::Cell { dimensions: 2 }, args) => m.graph.known(args[0]),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(cells, [[4.0, 7.0, 0.0, 1.0]]);
+}
+
+#[test]
+fn values_go_between_the_spaces_of_the_object_and_the_stage() {
+    let read = mtlx(
+        OPEN_PBR,
+        "color3f inputs:base_color.connect = </m/a.outputs:out>
+         color3f inputs:specular_color.connect = </m/b.outputs:out>
+         color3f inputs:coat_color.connect = </m/t.outputs:out>
+         float inputs:coat_weight = 1
+         float inputs:coat_darkening = 0",
+        "def Shader \"a\" { uniform token info:id = \"ND_transformpoint_vector3\"
+            vector3f inputs:in = (1, 2, 3)
+            string inputs:fromspace = \"world\"
+            string inputs:tospace = \"object\"
+            vector3f outputs:out }
+         def Shader \"b\" { uniform token info:id = \"ND_transformnormal_vector3\"
+            string inputs:fromspace = \"object\"
+            string inputs:tospace = \"world\"
+            vector3f outputs:out }
+         def Shader \"t\" { uniform token info:id = \"ND_bitangent_vector3\"
+            vector3f outputs:out }",
+    );
+    assert_eq!(read.warnings, "");
+    let m = read.material();
+    let transforms: Vec<_> = m
+        .graph
+        .ops()
+        .iter()
+        .filter_map(|op| match op {
+            GraphOp::Transform { quantity, from, to, value } => Some((*quantity, *from, *to, m.graph.known(*value))),
+            _ => None,
+        })
+        .collect();
+    // Of the stage's units, centimetres.
+    let (point, normal) = (Some([0.01, 0.02, 0.03, 1.0]), Some([0.0, 0.0, 1.0, 1.0]));
+    assert_eq!(transforms.len(), 2);
+    for (found, expected) in transforms.iter().zip([
+        (Quantity::Point, Space::World, Space::Object, point),
+        (Quantity::Normal, Space::Object, Space::World, normal),
+    ]) {
+        assert_eq!((found.0, found.1, found.2), (expected.0, expected.1, expected.2));
+        same(&found.3.unwrap()[..3], &expected.3.unwrap()[..3]);
+    }
+    assert!(m.graph.ops().contains(&GraphOp::Leaf(Leaf::Tangent)));
+    let unknown = mtlx(
+        OPEN_PBR,
+        "color3f inputs:base_color.connect = </m/a.outputs:out>",
+        "def Shader \"a\" { uniform token info:id = \"ND_transformpoint_vector3\"
+            string inputs:fromspace = \"world\"
+            string inputs:tospace = \"screen\"
+            vector3f outputs:out }",
+    );
+    assert!(unknown.warnings.contains("from \"world\" to \"screen\" isn't computed"), "{}", unknown.warnings);
+}
+
+#[test]
+fn three_images_are_projected_by_the_normal() {
+    let folder = tempfile::tempdir().unwrap();
+    png(folder.path(), "x.png", 1, &[[255, 0, 0]]);
+    png(folder.path(), "y.png", 1, &[[0, 255, 0]]);
+    png(folder.path(), "z.png", 1, &[[0, 0, 255]]);
+    let read = mtlx_in(
+        folder.path(),
+        OPEN_PBR,
+        "color3f inputs:base_color.connect = </m/c.outputs:out>",
+        "def Shader \"c\" { uniform token info:id = \"ND_triplanarprojection_color3\"
+            asset inputs:filex = @x.png@
+            asset inputs:filey = @y.png@
+            asset inputs:filez = @z.png@
+            vector3f inputs:normal = (0.48, 0.6, -0.64)
+            float inputs:blend = 0.5
+            int inputs:upaxis = 1
+            color3f outputs:out }",
+    );
+    assert_eq!(read.warnings, "");
+    let m = read.material();
+    let texels: Vec<(u32, [f64; 4])> = (0..3).map(|i| (i, std::array::from_fn(|k| f64::from(k as u32 == i)))).collect();
+    // Squares of the shares, by their sum.
+    let color = value_of(m, m.base_color.graph.unwrap(), &texels);
+    same(&color[..3], &[0.2304, 0.36, 0.4096]);
+    // Looked up by z y, x z and x y.
+    let places: Vec<_> = m
+        .graph
+        .ops()
+        .iter()
+        .filter_map(|op| match op {
+            GraphOp::Image { texture, uv } => Some((*texture, m.graph.op(*uv).clone())),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(places.iter().map(|(texture, _)| *texture).collect::<Vec<_>>(), [0, 1, 2]);
+    assert!(places.iter().all(|(_, uv)| matches!(uv, GraphOp::Apply(..))));
 }
