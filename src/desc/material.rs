@@ -123,7 +123,7 @@ pub enum AlphaMode {
     Blend,
 }
 
-/// KHR_materials_volume: the inside of a transmissive surface.
+/// KHR_materials_volume: the inside of a surface that light gets into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeDesc {
     /// Thickness beneath the surface; 0 makes the surface thin-walled. In metres, object space.
@@ -132,6 +132,8 @@ pub struct VolumeDesc {
     pub attenuation_distance: f64,
     /// Colour that white light has there.
     pub attenuation_color: [f64; 3],
+    /// True where it is there beside what the object lies in (Blender's volumes) instead of in its place.
+    pub adds: bool,
 }
 
 /// KHR_materials_clearcoat.
@@ -142,7 +144,7 @@ pub struct CoatDesc {
     /// Perceptual roughness.
     pub roughness: ScalarInput,
     /// Index of refraction; glTF fixes it at 1.5.
-    pub ior: f64,
+    pub ior: ScalarInput,
     /// What is left of light that goes straight down and up through it; white for a clear one.
     pub tint: ColorInput,
     /// Its own normal map.
@@ -164,7 +166,7 @@ pub struct IridescenceDesc {
     /// Weight, 0 to 1.
     pub weight: ScalarInput,
     /// Index of refraction of the film.
-    pub ior: f64,
+    pub ior: ScalarInput,
     /// Thickness in nanometres where `thickness` is 0.
     pub thickness_min: f64,
     /// Thickness in nanometres where `thickness` is 1.
@@ -244,8 +246,8 @@ pub struct MaterialDesc {
     pub roughness: ScalarInput,
     /// True where light that scatters between microfacets is not lost.
     pub multiscatter: bool,
-    /// Index of refraction.
-    pub ior: f64,
+    /// Index of refraction; 0 stands for an infinite one.
+    pub ior: ScalarInput,
     /// Weight of the dielectric's reflection (KHR_materials_specular).
     pub specular: ScalarInput,
     /// Tint of the dielectric's reflection at normal incidence.
@@ -276,6 +278,9 @@ pub struct MaterialDesc {
     pub emission_strength: f64,
     /// Tangent-space normals.
     pub normal: Option<NormalInput>,
+    /// True where diffuse light fades towards the smooth surface whose normal a map bends (Blender's *Bump Map
+    /// Correction*).
+    pub bump_correction: bool,
     /// Baked occlusion of indirect light: `1 + strength × (texture − 1)`; factor is the strength.
     pub occlusion: Option<ScalarInput>,
     /// No scattering: the base colour is what is seen (KHR_materials_unlit).
@@ -306,7 +311,7 @@ impl Default for MaterialDesc {
             diffuse_roughness: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(0.5),
             multiscatter: true,
-            ior: 1.5,
+            ior: ScalarInput::constant(1.5),
             specular: ScalarInput::constant(1.0),
             specular_color: ColorInput::constant([1.0; 3]),
             specular_level: ScalarInput::constant(1.0),
@@ -322,6 +327,7 @@ impl Default for MaterialDesc {
             emission: ColorInput::constant([0.0; 3]),
             emission_strength: 1.0,
             normal: None,
+            bump_correction: true,
             occlusion: None,
             unlit: false,
             holdout: false,
@@ -353,7 +359,7 @@ impl MaterialDesc {
     }
 
     /// Inputs of what scatters.
-    pub(super) fn layers(&self) -> [Option<Varying>; 29] {
+    pub(super) fn layers(&self) -> [Option<Varying>; 32] {
         let Self { coat, sheen, iridescence, anisotropy, translucent, .. } = self;
         let beneath = self.subsurface.map(|subsurface| subsurface.inputs());
         let beneath = |i: usize| beneath.map(|inputs| inputs[i]);
@@ -363,6 +369,7 @@ impl MaterialDesc {
             Some(of_color(&self.metal_edge)),
             Some(of_scalar(&self.diffuse_roughness)),
             Some(of_scalar(&self.roughness)),
+            Some(of_scalar(&self.ior)),
             Some(of_scalar(&self.specular)),
             Some(of_color(&self.specular_color)),
             Some(of_scalar(&self.specular_level)),
@@ -377,11 +384,13 @@ impl MaterialDesc {
             translucent.as_ref().map(|t| of_color(&t.color)),
             coat.as_ref().map(|c| of_scalar(&c.weight)),
             coat.as_ref().map(|c| of_scalar(&c.roughness)),
+            coat.as_ref().map(|c| of_scalar(&c.ior)),
             coat.as_ref().map(|c| of_color(&c.tint)),
             coat.as_ref().and_then(|c| c.normal).map(of_normal),
             sheen.as_ref().map(|s| of_color(&s.color)),
             sheen.as_ref().map(|s| of_scalar(&s.roughness)),
             iridescence.as_ref().map(|i| of_scalar(&i.weight)),
+            iridescence.as_ref().map(|i| of_scalar(&i.ior)),
             iridescence.as_ref().map(|i| of_scalar(&i.thickness)),
             anisotropy.as_ref().map(|a| of_scalar(&a.strength)),
             anisotropy.as_ref().map(|a| of_scalar(&a.rotation)),

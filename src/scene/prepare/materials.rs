@@ -16,7 +16,7 @@ use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, 
 use crate::error::Warnings;
 use crate::film::Aov;
 use crate::math::Rgb;
-use crate::scene::Material;
+use crate::scene::{Interior, Material};
 use crate::scene::asked::Names;
 use crate::scene::effects;
 use crate::scene::material::{ColorInput, NormalInput, Opacity, Part, Programs, ScalarInput, Varying, rgb_of, single};
@@ -365,7 +365,8 @@ impl Builder<'_> {
             aovs: self.program(inputs),
         };
         let of_part = |part: &Part| part.bends.as_ref().is_some_and(|bends| bends.normal.is_some());
-        let bumps = normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part);
+        let bumps = desc.bump_correction
+            && (normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part));
         Material {
             parts,
             alpha,
@@ -376,8 +377,7 @@ impl Builder<'_> {
                 AlphaMode::Blend => Opacity::Blend,
             },
             transparency,
-            thin: volume.is_none(),
-            absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
+            interior: volume.map(|volume| Interior { sigma: absorption(&volume), adds: volume.adds }),
             emission,
             unlit: desc.unlit,
             holdout: desc.holdout,
