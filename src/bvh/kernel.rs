@@ -19,7 +19,7 @@ pub(super) struct Kernel {
 
 /// The queries of an odd instance ([`Placed::is_odd`]) for one instruction set. They are called, and with nothing
 /// that has to be made for them, so that code and registers for triangles that stand still are as if there were
-/// none.
+/// none; round cones in turn as if nothing moved.
 pub(super) struct OddCode {
     pub closest: unsafe fn(&Placed, &Ray, Best) -> Best,
     pub any: unsafe fn(&Placed, &Ray) -> bool,
@@ -30,15 +30,29 @@ macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
+        unsafe fn closest_moving(placed: &Placed, ray: &Ray, best: Best) -> Best {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.closest_moving::<$simd>(ray, best) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
+        unsafe fn any_moving(placed: &Placed, ray: &Ray) -> bool {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.any_moving::<$simd>(ray) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
         unsafe fn closest_odd(placed: &Placed, ray: &Ray, best: Best) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { placed.closest_odd::<$simd>(ray, best) }
+            unsafe {
+                if placed.moves() { closest_moving(placed, ray, best) } else { placed.closest_round::<$simd>(ray, best) }
+            }
         }
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
         unsafe fn any_odd(placed: &Placed, ray: &Ray) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { placed.any_odd::<$simd>(ray) }
+            unsafe { if placed.moves() { any_moving(placed, ray) } else { placed.any_round::<$simd>(ray) } }
         }
         static ODD: OddCode = OddCode { closest: closest_odd, any: any_odd };
         $(#[target_feature(enable = $features)])?

@@ -148,7 +148,9 @@ impl ClosureDesc {
     }
 
     fn inputs(&self) -> Vec<Varying> {
-        let film = |film: &Option<IridescenceDesc>| film.map(|f| [of_scalar(&f.weight), of_scalar(&f.ior), of_scalar(&f.thickness)]);
+        let film = |film: &Option<IridescenceDesc>| {
+            film.map(|f| [of_scalar(&f.weight), of_scalar(&f.ior), of_scalar(&f.thickness)])
+        };
         let mut all = Vec::new();
         match self {
             Self::Layered(layers) => all.extend(layers.layers().into_iter().flatten()),

@@ -1,5 +1,6 @@
 //! Ambient occlusion: `A(p) = 1/π ∫ V(p, ω; distance) (n·ω) dω` about the shading normal.
 
+use super::path::First;
 use crate::film::PixelSample;
 use crate::light::Shadow;
 use crate::math::{Frame, Ray, Rgb};
@@ -38,11 +39,12 @@ fn distance(settings: &Settings) -> f32 {
 /// The integrator that renders nothing else: Combined holds the ao pass.
 pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings: &Settings) -> PixelSample {
     let mut sample = PixelSample::of(&scene.passes);
-    let Some((it, vertex, media)) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
+    let Some(first) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
         return sample;
     };
+    let First { it, vertex, media, left } = first;
     let frame = scene.shading_frame(&it);
-    sample.ao = openness(scene, sampler, vertex, &it, &frame, settings, &media);
+    sample.ao = openness(scene, sampler, vertex, &it, &frame, settings, &media) * left;
     sample.combined = sample.ao;
     sample.alpha = 1.0;
     super::first_hit::describe(scene, &it, &frame, &mut sample);

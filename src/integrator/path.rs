@@ -8,7 +8,7 @@ mod lights;
 mod next;
 mod scatter;
 
-pub use next::first_surface;
+pub use next::{First, first_surface};
 
 use super::direct::Shading;
 use super::first_hit::{describe, describe_shape};
@@ -47,8 +47,8 @@ struct Path {
     scatterings: u32,
     /// True where one of them was diffuse.
     diffuse: bool,
-    /// True where it has lost light on its way.
-    absorbed: bool,
+    /// Factor of `beta` by what has absorbed light on the way.
+    left: Rgb,
     /// What the path is inside of.
     media: Media,
     /// Surfaces met so far, passed ones included: the index of random decisions.
@@ -77,7 +77,7 @@ impl Path {
             shares: ByLobe::BLACK,
             scatterings: 0,
             diffuse: false,
-            absorbed: false,
+            left: Rgb::WHITE,
             media: if scene.effects.absorption { scene.media_around(&ray) } else { Media::NONE },
             vertex: 0,
             min_pdf: f32::INFINITY,
@@ -91,7 +91,7 @@ impl Path {
     /// Goes on for `dist` metres through what absorbs there.
     fn absorb(&mut self, dist: f32) {
         let left = self.media.transmitted(dist);
-        self.absorbed |= left != Rgb::WHITE;
+        self.left *= left;
         self.beta *= left;
     }
 }
@@ -200,7 +200,7 @@ fn describe_first(
     let Shading { it, frame, bsdf, vertex, media } = shading;
     describe(scene, it, frame, sample);
     if scene.effects.ao {
-        sample.ao = ao::openness(scene, sampler, *vertex, it, frame, settings, media) * path.alpha;
+        sample.ao = ao::openness(scene, sampler, *vertex, it, frame, settings, media) * (path.left * path.alpha);
     }
     if scene.effects.color {
         let color = bsdf.color() * path.beta;

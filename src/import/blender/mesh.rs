@@ -106,9 +106,9 @@ impl NamedMesh {
         }
         for name in &dress.tangent_maps {
             let index = self.uv_names.iter().position(|known| **known == **name);
-            let tangents = index.and_then(|index| self.mesh.uvs.get(index)).and_then(|uvs| {
-                tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles)
-            });
+            let tangents = index
+                .and_then(|index| self.mesh.uvs.get(index))
+                .and_then(|uvs| tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles));
             if let Some(values) = tangents {
                 mesh.attributes.push(NamedAttribute { name: tangents_of(name).into(), values });
             }

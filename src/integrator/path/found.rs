@@ -36,7 +36,7 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &
 pub(super) fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
     if path.scatterings == 0 && scene.background_visible {
         sample.alpha = path.alpha;
-    } else if path.scatterings == 0 && path.absorbed {
+    } else if path.scatterings == 0 && path.left != Rgb::WHITE {
         // What absorbs covers as much as it takes.
         sample.alpha = (path.alpha - path.beta.mean()).max(0.0);
     }

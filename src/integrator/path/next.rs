@@ -63,15 +63,26 @@ pub(super) fn next_surface(
     None
 }
 
-/// The first surface that a ray from the camera does not pass, its index of decisions and what is before it; what it
-/// has met is told to `sample`.
+/// The first surface that a ray from the camera does not pass.
+pub struct First {
+    /// The point.
+    pub it: Interaction,
+    /// Index of its random decisions.
+    pub vertex: u32,
+    /// What is before it.
+    pub media: Media,
+    /// What is left there of light, by what has absorbed it on the way.
+    pub left: Rgb,
+}
+
+/// The first surface; what the ray has met is told to `sample`.
 pub fn first_surface(
     scene: &Scene,
     sampler: &Sampler,
     ray: Ray,
     cone: RayCone,
     sample: &mut PixelSample,
-) -> Option<(Interaction, u32, Media)> {
+) -> Option<First> {
     let mut path = Path::from_camera(scene, ray, cone);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
@@ -81,5 +92,10 @@ pub fn first_surface(
     if surface.is_none() && !described {
         scene.add_background_aovs(path.ray.d, &mut sample.aovs);
     }
-    surface.filter(|it| !scene.is_holdout(it)).map(|it| (it, path.vertex, path.media))
+    surface.filter(|it| !scene.is_holdout(it)).map(|it| First {
+        it,
+        vertex: path.vertex,
+        media: path.media,
+        left: path.left,
+    })
 }

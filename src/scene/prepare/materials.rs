@@ -16,10 +16,10 @@ use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, 
 use crate::error::Warnings;
 use crate::film::Aov;
 use crate::math::Rgb;
-use crate::scene::{Interior, Material};
 use crate::scene::asked::Names;
 use crate::scene::effects;
 use crate::scene::material::{ColorInput, NormalInput, Opacity, Part, Programs, ScalarInput, Varying, rgb_of, single};
+use crate::scene::{Interior, Material};
 use crate::settings::Settings;
 use crate::texture::graph::Program;
 use crate::texture::{Image, Texture, TextureRef};
@@ -365,8 +365,8 @@ impl Builder<'_> {
             aovs: self.program(inputs),
         };
         let of_part = |part: &Part| part.bends.as_ref().is_some_and(|bends| bends.normal.is_some());
-        let bumps = desc.bump_correction
-            && (normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part));
+        let bumps =
+            desc.bump_correction && (normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part));
         Material {
             parts,
             alpha,

@@ -1,9 +1,7 @@
 //! The Principled BSDF as a layered surface.
 
 use super::flow::{At, Flow};
-use super::surface::{
-    alpha_mode, anisotropy, color, film, input, normal, number, optional, scalar, solid, subsurface,
-};
+use super::surface::{alpha_mode, anisotropy, color, film, input, normal, number, optional, scalar, solid, subsurface};
 use crate::desc::graph::{Function, Leaf, Math, ValueId};
 use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, SheenDesc, SubsurfaceDesc};
 

@@ -5,8 +5,8 @@
 
 use super::closure::{self, Part};
 use super::flow::{At, Flow};
-use crate::desc::{ScalarInput, VolumeDesc};
 use crate::desc::graph::ValueId;
+use crate::desc::{ScalarInput, VolumeDesc};
 
 /// What is left out.
 #[derive(Default)]
