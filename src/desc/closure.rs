@@ -1,6 +1,6 @@
 //! What scatters where shader nodes are mixed: lobes by the name of their nodes, each with its weight.
 
-use super::material::{Varying, of_color, of_normal, of_scalar};
+use super::input::{Varying, of_color, of_normal, of_scalar};
 use super::{
     AnisotropyDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput, SheenDesc, SubsurfaceDesc,
 };

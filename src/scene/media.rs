@@ -97,7 +97,7 @@ impl Scene {
     pub fn media_around(&self, ray: &Ray) -> Media {
         let mut media = Media::NONE;
         let Some((bvh, instances)) = &self.absorbing else { return media };
-        let mut up = Ray { time: ray.time, ..Ray::new(ray.o, Vec3::Z) };
+        let mut up = Ray { time: ray.time, ..Ray::new(ray.o, Vec3::Y) };
         let (mut around, mut seen) = (Vec::new(), Vec::new());
         for _ in 0..4 * DEPTH {
             let Some(mut hit) = bvh.closest_hit(&up, mask::CAMERA) else { break };
