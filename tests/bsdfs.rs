@@ -216,10 +216,12 @@ impl Case {
 
 /// `closure` alone, seen from `wo`.
 fn seen(closure: &Closure, wo: Vec3, entering: bool, widening: Widening) -> Bsdf {
-    let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+    let mut bsdf = Bsdf::none();
+    let mut builder = Builder::new(&mut bsdf, wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
     builder.set_widening(widening);
     builder.add(Rgb::WHITE, closure);
-    builder.finish()
+    builder.finish();
+    bsdf
 }
 
 /// A view at an angle to the normal, on either side of it.

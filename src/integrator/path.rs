@@ -15,7 +15,7 @@ use super::first_hit::{describe, describe_shape};
 use super::scattering::Scattering;
 use super::split::to_film;
 use super::{ao, catcher, shadow_pass};
-use crate::bsdf::ByLobe;
+use crate::bsdf::{Bsdf, ByLobe};
 use crate::film::PixelSample;
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
@@ -135,7 +135,8 @@ pub fn trace(
             break;
         }
         let frame = scene.shading_frame(&it);
-        let bsdf = scene.bsdf(&it, &frame, path.share, Blur::of_path(settings, path.min_pdf));
+        let mut bsdf = Bsdf::none();
+        scene.fill_bsdf(&mut bsdf, &it, &frame, path.share, Blur::of_path(settings, path.min_pdf));
         let around;
         let media = if scene.effects.absorption {
             around = path.media;

@@ -2,7 +2,7 @@
 
 use super::Path;
 use super::lights::add_lights;
-use crate::bsdf::{Beneath, BsdfSample, Closure, Inside, Lobe};
+use crate::bsdf::{Beneath, Bsdf, BsdfSample, Closure, Inside, Lobe};
 use crate::film::PixelSample;
 use crate::integrator::direct::Shading;
 use crate::integrator::scattering::{Scattering, seen};
@@ -117,9 +117,10 @@ fn go_beneath(
     path.beta = beta;
     path.vertex += 1;
     let frame = scene.shading_frame(&it);
-    let mut builder = scene.builder(&it, &frame);
+    let mut bsdf = Bsdf::none();
+    let mut builder = scene.builder(&mut bsdf, &it, &frame);
     builder.add(Rgb::WHITE, &Closure::Diffuse { color: Rgb::WHITE, roughness: 0.0, multiscatter: false });
-    let bsdf = builder.finish();
+    builder.finish();
     let media = path.media;
     let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex, media: &media };
     add_lights(scene, sampler, path, &shading, light_samples, sample);
