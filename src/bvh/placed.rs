@@ -14,7 +14,7 @@ use crate::math::{Affine3A, Bounds, DAffine3, DMat3, MovingTransform, Ray, gamma
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// Columns of the linear part, then the translation.
-type Columns = [[f32; 3]; 4];
+pub(super) type Columns = [[f32; 3]; 4];
 
 /// An instance as traversal needs it.
 #[repr(C, align(64))]
@@ -96,56 +96,63 @@ impl Placed {
         }
     }
 
-    /// `best`, or the nearest hit of a ray in render space on round cones that stand still.
+    /// From render to object space where it does not move.
+    #[inline(always)]
+    pub fn still(&self) -> &Columns {
+        &self.render_to_object
+    }
+
+    /// `best`, or the nearest hit of a ray in render space on round cones, whose space is reached by `to_object`.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn closest_round<S: Simd>(&self, ray: &Ray, mut best: Best) -> Best {
+    pub unsafe fn closest_round<S: Simd>(&self, to_object: &Columns, ray: &Ray, mut best: Best) -> Best {
         // SAFETY: the shape lives as long as the tree; the instruction set by contract.
         unsafe {
             let blas = &*self.blas;
             if let Kind::Rounds(rounds) = blas.kind() {
-                let start = round_start(&self.render_to_object, ray);
-                blas.closest_round::<S>(rounds, &start, self.id(), &mut best);
+                blas.closest_round::<S>(rounds, &round_start(to_object, ray), self.id(), &mut best);
             }
         }
         best
     }
 
-    /// True where a ray in render space hits round cones that stand still.
+    /// True where a ray in render space hits round cones, whose space is reached by `to_object`.
     ///
     /// # Safety
     /// As for [`Placed::closest_round`].
     #[inline(always)]
-    pub unsafe fn any_round<S: Simd>(&self, ray: &Ray) -> bool {
+    pub unsafe fn any_round<S: Simd>(&self, to_object: &Columns, ray: &Ray) -> bool {
         // SAFETY: as above.
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
-                Kind::Rounds(rounds) => {
-                    blas.any_round::<S>(rounds, &round_start(&self.render_to_object, ray), ray.t_max)
-                }
+                Kind::Rounds(rounds) => blas.any_round::<S>(rounds, &round_start(to_object, ray), ray.t_max),
                 _ => false,
             }
         }
     }
 
-    /// `best`, or the nearest hit of a ray in render space on the instance, which moves or whose points do.
+    /// `best`, or the nearest hit of a ray in render space on the instance, which moves or whose points do;
+    /// `closest_round` is the compiled [`Placed::closest_round`].
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn closest_moving<S: Simd>(&self, ray: &Ray, mut best: Best) -> Best {
+    pub unsafe fn closest_moving<S: Simd>(
+        &self,
+        ray: &Ray,
+        mut best: Best,
+        closest_round: unsafe fn(&Self, &Columns, &Ray, Best) -> Best,
+    ) -> Best {
         let Some(to_object) = self.to_object(ray) else { return best };
         // SAFETY: the shape lives as long as the tree; the instruction set by contract.
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
                 Kind::Triangles => blas.closest::<S, true>(&setup(&to_object, ray), self.id(), &mut best),
-                Kind::Rounds(rounds) => {
-                    blas.closest_round::<S>(rounds, &round_start(&to_object, ray), self.id(), &mut best);
-                }
+                Kind::Rounds(_) => return closest_round(self, &to_object, ray, best),
                 Kind::Moving(moving) => {
                     moving.closest::<S>(&round_start(&to_object, ray), ray.time, self.id(), &mut best);
                 }
@@ -154,19 +161,20 @@ impl Placed {
         best
     }
 
-    /// True where a ray in render space hits the instance, which moves or whose points do.
+    /// True where a ray in render space hits the instance, which moves or whose points do; `any_round` is the compiled
+    /// [`Placed::any_round`].
     ///
     /// # Safety
     /// As for [`Placed::closest_moving`].
     #[inline(always)]
-    pub unsafe fn any_moving<S: Simd>(&self, ray: &Ray) -> bool {
+    pub unsafe fn any_moving<S: Simd>(&self, ray: &Ray, any_round: unsafe fn(&Self, &Columns, &Ray) -> bool) -> bool {
         let Some(to_object) = self.to_object(ray) else { return false };
         // SAFETY: as above.
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
                 Kind::Triangles => blas.any::<S, true>(&setup(&to_object, ray), ray.t_max),
-                Kind::Rounds(rounds) => blas.any_round::<S>(rounds, &round_start(&to_object, ray), ray.t_max),
+                Kind::Rounds(_) => any_round(self, &to_object, ray),
                 Kind::Moving(moving) => moving.any::<S>(&round_start(&to_object, ray), ray.time, ray.t_max),
             }
         }
