@@ -286,7 +286,7 @@ fn what_is_inside_an_absorbing_solid_is_seen_through_it() {
     let mut builder = Builder::default();
     let lamp = emitter(&mut builder, 1.0, 0.0);
     let water = builder.material(MaterialDesc {
-        ior: 1.0,
+        ior: ScalarInput::constant(1.0),
         roughness: ScalarInput::constant(0.0),
         specular: ScalarInput::constant(0.0),
         base_color: ColorInput::constant([1.0; 3]),
@@ -295,6 +295,7 @@ fn what_is_inside_an_absorbing_solid_is_seen_through_it() {
             thickness: ScalarInput::constant(1.0),
             attenuation_distance: 2.0,
             attenuation_color: [0.25, 0.5, 1.0],
+            adds: false,
         }),
         ..MaterialDesc::default()
     });
@@ -348,6 +349,7 @@ fn busy_scene() -> Builder {
             thickness: number(1.0),
             attenuation_distance: 0.5,
             attenuation_color: [0.5, 0.8, 0.9],
+            adds: false,
         }),
         ..MaterialDesc::default()
     });
@@ -363,6 +365,7 @@ fn busy_scene() -> Builder {
             thickness: number(1.0),
             attenuation_distance: 0.1,
             attenuation_color: [0.1, 0.9, 0.5],
+            adds: false,
         }),
         ..MaterialDesc::default()
     });

@@ -216,10 +216,12 @@ impl Case {
 
 /// `closure` alone, seen from `wo`.
 fn seen(closure: &Closure, wo: Vec3, entering: bool, widening: Widening) -> Bsdf {
-    let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+    let mut bsdf = Bsdf::none();
+    let mut builder = Builder::new(&mut bsdf, wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
     builder.set_widening(widening);
     builder.add(Rgb::WHITE, closure);
-    builder.finish()
+    builder.finish();
+    bsdf
 }
 
 /// A view at an angle to the normal, on either side of it.
@@ -395,6 +397,24 @@ fn albedo_is_the_furnace_per_class() {
                 "{} {degrees}: {parts:?} {albedo:?}",
                 case.name
             );
+        }
+    }
+}
+
+/// A white surface below a coat: all that the coat lets down comes back, whatever its microfacets lose among themselves.
+#[test]
+fn white_coats_keep_all_light_and_no_more() {
+    for ior in [1.2, 1.5, 2.0] {
+        for (roughness, specular) in [(0.03, 0.0), (0.25, 0.0), (0.5, 0.0), (0.5, 1.0), (0.75, 1.0), (1.0, 1.0)] {
+            for degrees in [0.0, 45.0, 60.0, 75.0, 85.0] {
+                let coat = Coat { weight: 1.0, roughness, ior, tint: Rgb::WHITE, frame: None };
+                let surface = Surface { coat: Some(coat), specular, ..WHITE };
+                let bsdf = Bsdf::new(&surface, view(degrees, 0.0, true), true);
+                let seen = total(furnace(&bsdf, 1 << 17)).g;
+                let case = format!("IOR {ior}, roughness {roughness}, specular {specular}, {degrees} degrees");
+                println!("{case}: {:+.5}", seen - 1.0);
+                assert!((seen - 1.0).abs() < 1.5e-3, "{case}: {seen}");
+            }
         }
     }
 }

@@ -134,11 +134,12 @@ fn what_strands_absorb_goes_by_the_way_inside_for_there_are_no_inner_walls() {
         specular: ScalarInput::constant(0.0),
         transmission: ScalarInput::constant(1.0),
         roughness: ScalarInput::constant(0.0),
-        ior: 1.0,
+        ior: ScalarInput::constant(1.0),
         volume: Some(VolumeDesc {
             thickness: ScalarInput::constant(1.0),
             attenuation_distance: 1.0 / density,
             attenuation_color: [(-1.0_f64).exp(); 3],
+            adds: false,
         }),
         ..MaterialDesc::default()
     };

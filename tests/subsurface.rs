@@ -32,7 +32,7 @@ fn beneath(subsurface: SubsurfaceDesc) -> MaterialDesc {
         base_color: subsurface.color,
         specular: ScalarInput::constant(0.0),
         roughness: ScalarInput::constant(0.0),
-        ior: 1.0,
+        ior: ScalarInput::constant(1.0),
         subsurface: Some(subsurface),
         ..MaterialDesc::default()
     }
@@ -116,7 +116,7 @@ fn a_half_space_gives_back_what_cycles_does() {
             ..subsurface(colors, [0.4, 0.2, 0.1], method)
         };
         let material = MaterialDesc {
-            ior: 1.4,
+            ior: ScalarInput::constant(1.4),
             specular_level: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(1.0),
             ..beneath(beneath_it)
@@ -204,7 +204,7 @@ fn wax() -> MaterialDesc {
         weight: ScalarInput::constant(0.7),
         ..subsurface([0.8, 0.6, 0.4], [2.0, 1.0, 0.5], Method::RandomWalk)
     };
-    MaterialDesc { specular: ScalarInput::constant(1.0), ior: 1.5, ..beneath(wax) }
+    MaterialDesc { specular: ScalarInput::constant(1.0), ior: ScalarInput::constant(1.5), ..beneath(wax) }
 }
 
 #[test]

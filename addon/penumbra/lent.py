@@ -19,7 +19,7 @@ _REPLACED = {
 }
 # Panels of Cycles, whatever of them a version of Blender has.
 _OF_CYCLES = {
-    "CYCLES_PT_context_material", "CYCLES_MATERIAL_PT_preview", "CYCLES_MATERIAL_PT_surface",
+    "CYCLES_PT_context_material", "CYCLES_MATERIAL_PT_preview", "CYCLES_MATERIAL_PT_surface", "CYCLES_MATERIAL_PT_volume",
     "CYCLES_MATERIAL_PT_settings",
     "CYCLES_LIGHT_PT_preview", "CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_settings", "CYCLES_LIGHT_PT_nodes",
     "CYCLES_LIGHT_PT_beam_shape",

@@ -174,7 +174,7 @@ pub(super) fn beneath(film: &Option<ThinFilm>, base: Base) -> Option<Film> {
         .map(|film| Film::new(base, film.thickness, film.ior, unit(film.weight)))
 }
 
-impl Builder {
+impl Builder<'_> {
     /// Adds `closure` times `weight`, in the frame that was set last.
     pub fn add(&mut self, weight: Rgb, closure: &Closure) {
         match closure {

@@ -76,25 +76,28 @@ pub struct Widening {
     pub least: f32,
 }
 
-/// A [`Bsdf`] in the making.
+/// A [`Bsdf`] in the making, where it will be: it is too large to be handed over.
 #[derive(Debug)]
-pub struct Builder {
-    bsdf: Bsdf,
+pub struct Builder<'b> {
+    bsdf: &'b mut Bsdf,
     entering: bool,
     /// Frame of what is added next, where it names none.
     base: FrameId,
     widening: Widening,
 }
 
-impl Builder {
+impl<'b> Builder<'b> {
     /// For a view from `wo` of a surface with geometric normal `ng` on the side of `wo`, both in the
     /// surface's frame. `entering` is true where `wo` is on the outside, the side to which the geometric
-    /// normal points; it has no meaning for thin surfaces.
-    pub fn new(wo: Vec3, ng: Vec3, entering: bool) -> Self {
+    /// normal points; it has no meaning for thin surfaces. What `bsdf` was before is forgotten.
+    #[inline]
+    pub fn new(bsdf: &'b mut Bsdf, wo: Vec3, ng: Vec3, entering: bool) -> Self {
         let side = if wo.z < 0.0 { -1.0 } else { 1.0 };
-        let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let ng = Vec3::new(ng.x, ng.y, ng.z * side);
-        let bsdf = Bsdf { terms: SmallVec::new(), frames: SmallVec::new(), wo, side, ng, ns: ng, softening: None };
+        bsdf.terms.clear();
+        bsdf.frames.clear();
+        bsdf.wo = Vec3::new(wo.x, wo.y, wo.z.abs());
+        bsdf.ng = Vec3::new(ng.x, ng.y, ng.z * side);
+        (bsdf.ns, bsdf.side, bsdf.softening) = (bsdf.ng, side, None);
         Self { bsdf, entering, base: None, widening: Widening::default() }
     }
 
@@ -166,9 +169,9 @@ impl Builder {
         }
     }
 
-    /// All that was added; lobes are chosen in proportion to their albedos.
+    /// Nothing is added any more: lobes are chosen in proportion to their albedos.
     #[inline]
-    pub fn finish(mut self) -> Bsdf {
+    pub fn finish(self) {
         let mut total = 0.0;
         for term in &mut self.bsdf.terms {
             term.pick = (term.color * term.lobe.albedo().sum()).mean();
@@ -178,16 +181,24 @@ impl Builder {
         for term in &mut self.bsdf.terms {
             term.pick *= scale;
         }
-        self.bsdf
     }
 }
 
 impl Bsdf {
+    /// What scatters nothing.
+    #[inline]
+    pub fn none() -> Self {
+        let (wo, ng) = (Vec3::Z, Vec3::Z);
+        Self { terms: SmallVec::new(), frames: SmallVec::new(), wo, side: 1.0, ng, ns: ng, softening: None }
+    }
+
     /// One layered surface, seen from `wo`; see [`Builder::new`].
     pub fn new(surface: &Surface, wo: Vec3, entering: bool) -> Self {
-        let mut builder = Builder::new(wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
+        let mut bsdf = Self::none();
+        let mut builder = Builder::new(&mut bsdf, wo, if wo.z < 0.0 { -Vec3::Z } else { Vec3::Z }, entering);
         builder.add(Rgb::WHITE, &Closure::Layered(*surface));
-        builder.finish()
+        builder.finish();
+        bsdf
     }
 
     /// The directional albedo per class.

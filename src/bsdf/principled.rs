@@ -19,7 +19,7 @@ use crate::math::{Frame, Rgb, Vec3, safe_sqrt, sqr};
 const LARGEST_IOR: f32 = 1e3;
 
 /// Adds the layers of `surface`, together times `weight`.
-pub(super) fn add(builder: &mut Builder, weight: Rgb, surface: &Surface) {
+pub(super) fn add(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface) {
     let base = surface.base_color.map(unit);
     let ior = match surface.ior {
         0.0 => LARGEST_IOR,
@@ -68,7 +68,7 @@ fn left(albedo: Rgb) -> f32 {
     (1.0 - albedo.max_component()).clamp(0.0, 1.0)
 }
 
-fn add_sheen(builder: &mut Builder, weight: Rgb, sheen: &Sheen, coat: Option<&Coat>) -> f32 {
+fn add_sheen(builder: &mut Builder<'_>, weight: Rgb, sheen: &Sheen, coat: Option<&Coat>) -> f32 {
     // Fibers stand on whatever is on top.
     let frame = coat.and_then(|coat| {
         let share = unit(coat.weight);
@@ -84,7 +84,7 @@ fn add_sheen(builder: &mut Builder, weight: Rgb, sheen: &Sheen, coat: Option<&Co
 }
 
 /// What is left for the layers below.
-fn add_coat(builder: &mut Builder, weight: Rgb, coat: &Coat) -> Rgb {
+fn add_coat(builder: &mut Builder<'_>, weight: Rgb, coat: &Coat) -> Rgb {
     let share = unit(coat.weight);
     if share == 0.0 {
         return Rgb::WHITE;
@@ -107,14 +107,14 @@ fn add_coat(builder: &mut Builder, weight: Rgb, coat: &Coat) -> Rgb {
     Rgb::WHITE.lerp(tint, share) * below
 }
 
-fn add_metal(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb) {
+fn add_metal(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rgb) {
     let metal = Metal::new(base, surface.metal_edge.map(unit));
     let fresnel = beneath(&surface.film, Base::Metal(metal)).map_or(Fresnel::Metal(metal), Fresnel::Film);
     add_facets(builder, weight, surface, fresnel);
 }
 
 /// Reflection at the microfacets of the base; what it leaves.
-fn add_facets(builder: &mut Builder, weight: Rgb, surface: &Surface, fresnel: Fresnel) -> f32 {
+fn add_facets(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, fresnel: Fresnel) -> f32 {
     let (ggx, frame) = builder.facets(surface.roughness, &surface.stretched);
     let frame = builder.frame(frame);
     let lobe = Reflection::new(ggx, fresnel, surface.multiscatter, builder.wo(frame));
@@ -123,7 +123,7 @@ fn add_facets(builder: &mut Builder, weight: Rgb, surface: &Surface, fresnel: Fr
     left
 }
 
-fn add_glass(builder: &mut Builder, weight: Rgb, surface: &Surface, base: Rgb, ior: f32) {
+fn add_glass(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rgb, ior: f32) {
     let eta = if builder.entering() || surface.thin { ior } else { 1.0 / ior };
     let fresnel = tinted(surface, f0_from_eta(ior), eta);
     let film = if surface.thin { surface.film } else { builder.film_seen(&surface.film, ior) };
@@ -150,7 +150,7 @@ fn curve(surface: &Surface, ior: f32) -> f32 {
 }
 
 /// Reflection over the diffuse part; what it leaves.
-fn add_specular(builder: &mut Builder, weight: Rgb, surface: &Surface, ior: f32) -> f32 {
+fn add_specular(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, ior: f32) -> f32 {
     let level = surface.specular_level.max(0.0);
     let curve = curve(surface, ior);
     // Approximation: an opaque surface of an index below 1 has no critical angle, the step in

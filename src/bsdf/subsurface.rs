@@ -137,7 +137,7 @@ impl Scatter for WayIn {
     }
 }
 
-impl Builder {
+impl Builder<'_> {
     /// Adds the light that scatters beneath the surface, together times `weight`; `alpha` is the width of the
     /// microfacets through which it goes in.
     pub(super) fn add_beneath(&mut self, weight: Rgb, subsurface: &Subsurface, alpha: f32) {
@@ -244,7 +244,8 @@ mod tests {
 
     #[test]
     fn channels_of_no_radius_are_lamberts() {
-        let mut builder = Builder::new(Vec3::Z, Vec3::Z, true);
+        let mut bsdf = super::Bsdf::none();
+        let mut builder = Builder::new(&mut bsdf, Vec3::Z, Vec3::Z, true);
         let subsurface = Subsurface {
             weight: 1.0,
             color: Rgb::new(0.5, 0.6, 0.7),
@@ -255,7 +256,7 @@ mod tests {
             shallow: false,
         };
         builder.add_beneath(Rgb::WHITE, &subsurface, 0.25);
-        let bsdf = builder.finish();
+        builder.finish();
         let diffuse = bsdf.eval(Vec3::Z).f_cos.diffuse * std::f32::consts::PI;
         assert_eq!((diffuse.r, (diffuse.g - 0.6).abs() < 1e-6, (diffuse.b - 0.7).abs() < 1e-6), (0.0, true, true));
         let entering = bsdf.sample(0.999, [0.5; 2]).unwrap();

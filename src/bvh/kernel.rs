@@ -3,7 +3,7 @@
 
 use super::Hit;
 use super::isa::Isa;
-use super::placed::Placed;
+use super::placed::{Columns, Placed};
 use super::ray::{is_plain, rescaled};
 use super::simd;
 use super::top::Tree;
@@ -19,7 +19,7 @@ pub(super) struct Kernel {
 
 /// The queries of an odd instance ([`Placed::is_odd`]) for one instruction set. They are called, and with nothing
 /// that has to be made for them, so that code and registers for triangles that stand still are as if there were
-/// none.
+/// none; round cones in turn as if nothing moved.
 pub(super) struct OddCode {
     pub closest: unsafe fn(&Placed, &Ray, Best) -> Best,
     pub any: unsafe fn(&Placed, &Ray) -> bool,
@@ -30,15 +30,49 @@ macro_rules! kernel {
     ($name:ident, $isa:expr, $simd:ty $(, $features:literal)?) => {{
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
+        unsafe fn closest_round(placed: &Placed, to_object: &Columns, ray: &Ray, best: Best) -> Best {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.closest_round::<$simd>(to_object, ray, best) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
+        unsafe fn any_round(placed: &Placed, to_object: &Columns, ray: &Ray) -> bool {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.any_round::<$simd>(to_object, ray) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
+        unsafe fn closest_moving(placed: &Placed, ray: &Ray, best: Best) -> Best {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.closest_moving::<$simd>(ray, best, closest_round) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
+        unsafe fn any_moving(placed: &Placed, ray: &Ray) -> bool {
+            // SAFETY: the features are enabled here.
+            unsafe { placed.any_moving::<$simd>(ray, any_round) }
+        }
+        #[inline(never)]
+        $(#[target_feature(enable = $features)])?
         unsafe fn closest_odd(placed: &Placed, ray: &Ray, best: Best) -> Best {
             // SAFETY: the features are enabled here.
-            unsafe { placed.closest_odd::<$simd>(ray, best) }
+            unsafe {
+                match placed.moves() {
+                    true => closest_moving(placed, ray, best),
+                    false => closest_round(placed, placed.still(), ray, best),
+                }
+            }
         }
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
         unsafe fn any_odd(placed: &Placed, ray: &Ray) -> bool {
             // SAFETY: the features are enabled here.
-            unsafe { placed.any_odd::<$simd>(ray) }
+            unsafe {
+                match placed.moves() {
+                    true => any_moving(placed, ray),
+                    false => any_round(placed, placed.still(), ray),
+                }
+            }
         }
         static ODD: OddCode = OddCode { closest: closest_odd, any: any_odd };
         $(#[target_feature(enable = $features)])?

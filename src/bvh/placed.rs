@@ -14,7 +14,7 @@ use crate::math::{Affine3A, Bounds, DAffine3, DMat3, MovingTransform, Ray, gamma
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// Columns of the linear part, then the translation.
-type Columns = [[f32; 3]; 4];
+pub(super) type Columns = [[f32; 3]; 4];
 
 /// An instance as traversal needs it.
 #[repr(C, align(64))]
@@ -22,8 +22,8 @@ pub(super) struct Placed {
     render_to_object: Columns,
     pub blas: *const Blas,
     pub mask: u64,
-    /// Index in the caller's list, [`Placed::IDENTITY`] added where the transform does nothing and
-    /// [`Placed::ODD`] for all but triangles that stand still.
+    /// Index in the caller's list, [`Placed::IDENTITY`] added where the transform does nothing, [`Placed::ODD`] for all
+    /// but triangles that stand still and [`Placed::MOVES`] for all that does not.
     id_and_flags: u32,
     /// How the transform changes, in place of `render_to_object`; null where it does not.
     motion: *const MovingTransform,
@@ -37,27 +37,29 @@ unsafe impl Sync for Placed {}
 impl Placed {
     const IDENTITY: u32 = 1 << 31;
     const ODD: u32 = 1 << 30;
+    const MOVES: u32 = 1 << 29;
 
     /// `None` for an instance that is never hit.
     pub fn new(id: usize, instance: &Instance, blases: &[Arc<Blas>]) -> Option<Self> {
         let blas = blases.get(instance.blas as usize)?;
         let render_to_object = inverse(&instance.object_to_render)?;
         let identity = instance.object_to_render == Affine3A::IDENTITY;
-        assert!(id < Self::ODD as usize, "too many instances");
+        assert!(id < Self::MOVES as usize, "too many instances");
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-        let odd = instance.motion.is_some() || !matches!(blas.kind(), Kind::Triangles);
+        let moves = instance.motion.is_some() || matches!(blas.kind(), Kind::Moving(_));
+        let odd = moves || matches!(blas.kind(), Kind::Rounds(_));
         Some(Self {
             render_to_object,
             blas: Arc::as_ptr(blas),
             mask: instance.mask,
-            id_and_flags: id as u32 | flag(identity, Self::IDENTITY) | flag(odd, Self::ODD),
+            id_and_flags: id as u32 | flag(identity, Self::IDENTITY) | flag(odd, Self::ODD) | flag(moves, Self::MOVES),
             motion: instance.motion.as_ref().map_or(std::ptr::null(), Arc::as_ptr),
         })
     }
 
     #[inline(always)]
     pub fn id(&self) -> u32 {
-        self.id_and_flags & !(Self::IDENTITY | Self::ODD)
+        self.id_and_flags & !(Self::IDENTITY | Self::ODD | Self::MOVES)
     }
 
     #[inline(always)]
@@ -65,11 +67,17 @@ impl Placed {
         self.id_and_flags & Self::IDENTITY != 0
     }
 
-    /// True for round cones and for all that moves: its queries are [`Placed::closest_odd`] and
-    /// [`Placed::any_odd`].
+    /// True for round cones and for all that moves: their queries are called.
     #[inline(always)]
     pub fn is_odd(&self) -> bool {
         self.id_and_flags & Self::ODD != 0
+    }
+
+    /// True for what moves or whose points do: its queries are [`Placed::closest_moving`] and [`Placed::any_moving`];
+    /// those of other odd instances are [`Placed::closest_round`] and [`Placed::any_round`].
+    #[inline(always)]
+    pub fn moves(&self) -> bool {
+        self.id_and_flags & Self::MOVES != 0
     }
 
     /// The ray in object space.
@@ -88,21 +96,63 @@ impl Placed {
         }
     }
 
-    /// `best`, or the nearest hit of a ray in render space on the odd instance.
+    /// From render to object space where it does not move.
+    #[inline(always)]
+    pub fn still(&self) -> &Columns {
+        &self.render_to_object
+    }
+
+    /// `best`, or the nearest hit of a ray in render space on round cones, whose space is reached by `to_object`.
     ///
     /// # Safety
     /// The instruction set is available.
     #[inline(always)]
-    pub unsafe fn closest_odd<S: Simd>(&self, ray: &Ray, mut best: Best) -> Best {
+    pub unsafe fn closest_round<S: Simd>(&self, to_object: &Columns, ray: &Ray, mut best: Best) -> Best {
+        // SAFETY: the shape lives as long as the tree; the instruction set by contract.
+        unsafe {
+            let blas = &*self.blas;
+            if let Kind::Rounds(rounds) = blas.kind() {
+                blas.closest_round::<S>(rounds, &round_start(to_object, ray), self.id(), &mut best);
+            }
+        }
+        best
+    }
+
+    /// True where a ray in render space hits round cones, whose space is reached by `to_object`.
+    ///
+    /// # Safety
+    /// As for [`Placed::closest_round`].
+    #[inline(always)]
+    pub unsafe fn any_round<S: Simd>(&self, to_object: &Columns, ray: &Ray) -> bool {
+        // SAFETY: as above.
+        unsafe {
+            let blas = &*self.blas;
+            match blas.kind() {
+                Kind::Rounds(rounds) => blas.any_round::<S>(rounds, &round_start(to_object, ray), ray.t_max),
+                _ => false,
+            }
+        }
+    }
+
+    /// `best`, or the nearest hit of a ray in render space on the instance, which moves or whose points do;
+    /// `closest_round` is the compiled [`Placed::closest_round`].
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[inline(always)]
+    pub unsafe fn closest_moving<S: Simd>(
+        &self,
+        ray: &Ray,
+        mut best: Best,
+        closest_round: unsafe fn(&Self, &Columns, &Ray, Best) -> Best,
+    ) -> Best {
         let Some(to_object) = self.to_object(ray) else { return best };
         // SAFETY: the shape lives as long as the tree; the instruction set by contract.
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
                 Kind::Triangles => blas.closest::<S, true>(&setup(&to_object, ray), self.id(), &mut best),
-                Kind::Rounds(rounds) => {
-                    blas.closest_round::<S>(rounds, &round_start(&to_object, ray), self.id(), &mut best);
-                }
+                Kind::Rounds(_) => return closest_round(self, &to_object, ray, best),
                 Kind::Moving(moving) => {
                     moving.closest::<S>(&round_start(&to_object, ray), ray.time, self.id(), &mut best);
                 }
@@ -111,19 +161,20 @@ impl Placed {
         best
     }
 
-    /// True where a ray in render space hits the odd instance.
+    /// True where a ray in render space hits the instance, which moves or whose points do; `any_round` is the compiled
+    /// [`Placed::any_round`].
     ///
     /// # Safety
-    /// As for [`Placed::closest_odd`].
+    /// As for [`Placed::closest_moving`].
     #[inline(always)]
-    pub unsafe fn any_odd<S: Simd>(&self, ray: &Ray) -> bool {
+    pub unsafe fn any_moving<S: Simd>(&self, ray: &Ray, any_round: unsafe fn(&Self, &Columns, &Ray) -> bool) -> bool {
         let Some(to_object) = self.to_object(ray) else { return false };
         // SAFETY: as above.
         unsafe {
             let blas = &*self.blas;
             match blas.kind() {
                 Kind::Triangles => blas.any::<S, true>(&setup(&to_object, ray), ray.t_max),
-                Kind::Rounds(rounds) => blas.any_round::<S>(rounds, &round_start(&to_object, ray), ray.t_max),
+                Kind::Rounds(_) => any_round(self, &to_object, ray),
                 Kind::Moving(moving) => moving.any::<S>(&round_start(&to_object, ray), ray.time, ray.t_max),
             }
         }

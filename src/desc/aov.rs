@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::graph::{Graph, ValueId};
-use super::material::{ColorInput, ScalarInput};
+use super::{ColorInput, ScalarInput};
 
 /// A pass that a scene declares.
 #[derive(Clone, Debug, PartialEq, Eq)]

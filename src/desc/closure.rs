@@ -1,6 +1,6 @@
 //! What scatters where shader nodes are mixed: lobes by the name of their nodes, each with its weight.
 
-use super::material::{Varying, of_color, of_normal, of_scalar};
+use super::input::{Varying, of_color, of_normal, of_scalar};
 use super::{
     AnisotropyDesc, ColorInput, IridescenceDesc, MaterialDesc, NormalInput, ScalarInput, SheenDesc, SubsurfaceDesc,
 };
@@ -148,7 +148,9 @@ impl ClosureDesc {
     }
 
     fn inputs(&self) -> Vec<Varying> {
-        let film = |film: &Option<IridescenceDesc>| film.map(|f| [of_scalar(&f.weight), of_scalar(&f.thickness)]);
+        let film = |film: &Option<IridescenceDesc>| {
+            film.map(|f| [of_scalar(&f.weight), of_scalar(&f.ior), of_scalar(&f.thickness)])
+        };
         let mut all = Vec::new();
         match self {
             Self::Layered(layers) => all.extend(layers.layers().into_iter().flatten()),

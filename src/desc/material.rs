@@ -6,108 +6,12 @@
 use std::sync::Arc;
 
 use super::graph::{Graph, ValueId};
-use super::{AovOutput, PartDesc, SubsurfaceDesc, TextureRef};
+use super::input::{Varying, of_color, of_normal, of_scalar};
+use super::{
+    AnisotropyDesc, AovOutput, CoatDesc, ColorInput, IridescenceDesc, NormalInput, PartDesc, ScalarInput, SheenDesc,
+    SubsurfaceDesc, TextureRef, TranslucentDesc, VolumeDesc,
+};
 use crate::error::Place;
-
-/// A colour: `factor × texture.rgb × graph.rgb`, linear.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColorInput {
-    /// Constant part.
-    pub factor: [f64; 3],
-    /// Texture part; `None` for white.
-    pub texture: Option<TextureRef>,
-    /// Value of the material's graph; `None` for white.
-    pub graph: Option<ValueId>,
-}
-
-impl ColorInput {
-    /// The same colour everywhere.
-    pub const fn constant(factor: [f64; 3]) -> Self {
-        Self::textured(factor, None)
-    }
-
-    /// `factor × texture`.
-    pub const fn textured(factor: [f64; 3], texture: Option<TextureRef>) -> Self {
-        Self { factor, texture, graph: None }
-    }
-
-    /// What the material's graph says.
-    pub const fn graph(value: ValueId) -> Self {
-        Self { factor: [1.0; 3], texture: None, graph: Some(value) }
-    }
-}
-
-/// A channel of a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
-    /// Red or grey.
-    R,
-    /// Green.
-    G,
-    /// Blue.
-    B,
-    /// Alpha; 1 for an image without.
-    A,
-}
-
-/// A number: `factor × texture.channel × graph`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScalarInput {
-    /// Constant part.
-    pub factor: f64,
-    /// Texture part and which channel of it; `None` for 1.
-    pub texture: Option<(TextureRef, Channel)>,
-    /// Value of the material's graph, its first place; `None` for 1.
-    pub graph: Option<ValueId>,
-}
-
-impl ScalarInput {
-    /// The same number everywhere.
-    pub const fn constant(factor: f64) -> Self {
-        Self::textured(factor, None)
-    }
-
-    /// `factor × texture`.
-    pub const fn textured(factor: f64, texture: Option<(TextureRef, Channel)>) -> Self {
-        Self { factor, texture, graph: None }
-    }
-
-    /// What the material's graph says.
-    pub const fn graph(value: ValueId) -> Self {
-        Self { factor: 1.0, texture: None, graph: Some(value) }
-    }
-}
-
-/// Where a normal comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NormalInput {
-    /// A tangent-space map, +y along the bitangent.
-    Map {
-        /// The map.
-        texture: TextureRef,
-        /// Factor of its x and y.
-        scale: f64,
-    },
-    /// Value of the material's graph: a normal in world space, on the side of whoever looks.
-    Graph(ValueId),
-}
-
-impl NormalInput {
-    /// The map, where it is one.
-    pub fn texture(&self) -> Option<TextureRef> {
-        match self {
-            Self::Map { texture, .. } => Some(*texture),
-            Self::Graph(_) => None,
-        }
-    }
-
-    fn value(&self) -> Option<ValueId> {
-        match self {
-            Self::Map { .. } => None,
-            Self::Graph(value) => Some(*value),
-        }
-    }
-}
 
 /// How opacity is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,92 +25,6 @@ pub enum AlphaMode {
     },
     /// Opacity is alpha.
     Blend,
-}
-
-/// KHR_materials_volume: the inside of a transmissive surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VolumeDesc {
-    /// Thickness beneath the surface; 0 makes the surface thin-walled. In metres, object space.
-    pub thickness: ScalarInput,
-    /// Distance after which white light has `attenuation_color`; infinite for none.
-    pub attenuation_distance: f64,
-    /// Colour that white light has there.
-    pub attenuation_color: [f64; 3],
-}
-
-/// KHR_materials_clearcoat.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoatDesc {
-    /// Weight, 0 to 1.
-    pub weight: ScalarInput,
-    /// Perceptual roughness.
-    pub roughness: ScalarInput,
-    /// Index of refraction; glTF fixes it at 1.5.
-    pub ior: f64,
-    /// What is left of light that goes straight down and up through it; white for a clear one.
-    pub tint: ColorInput,
-    /// Its own normal map.
-    pub normal: Option<NormalInput>,
-}
-
-/// KHR_materials_sheen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SheenDesc {
-    /// Colour; black for none.
-    pub color: ColorInput,
-    /// Perceptual roughness.
-    pub roughness: ScalarInput,
-}
-
-/// KHR_materials_iridescence.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IridescenceDesc {
-    /// Weight, 0 to 1.
-    pub weight: ScalarInput,
-    /// Index of refraction of the film.
-    pub ior: f64,
-    /// Thickness in nanometres where `thickness` is 0.
-    pub thickness_min: f64,
-    /// Thickness in nanometres where `thickness` is 1.
-    pub thickness_max: f64,
-    /// Where between the two.
-    pub thickness: ScalarInput,
-}
-
-/// How strength widens microfacets of width α.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AnisotropyLaw {
-    /// Of KHR_materials_anisotropy: to `α + (1 − α) strength²` along the direction.
-    Gltf,
-    /// Of Blender's Principled and Metallic BSDF: α over and times `√(1 − 0.9 strength)`, wider along the direction.
-    Aspect,
-    /// Of Blender's Glossy BSDF: α times and over `1 − strength`, narrower along the direction; of a strength below
-    /// 0 the other way round.
-    Glossy,
-}
-
-/// Microfacets that are wider along one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnisotropyDesc {
-    /// Strength, 0 to 1.
-    pub strength: ScalarInput,
-    /// Direction in tangent space, radians counter-clockwise from the tangent.
-    pub rotation: ScalarInput,
-    /// Direction in red and green, strength in blue.
-    pub texture: Option<TextureRef>,
-    /// The tangent in world space, a value of the material's graph; `None` for that of the first UV set.
-    pub tangent: Option<ValueId>,
-    /// What strength means.
-    pub law: AnisotropyLaw,
-}
-
-/// Diffuse light that leaves on the other side (KHR_materials_diffuse_transmission).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TranslucentDesc {
-    /// Share of the diffuse light, 0 to 1.
-    pub weight: ScalarInput,
-    /// Albedo.
-    pub color: ColorInput,
 }
 
 /// A surface.
@@ -244,8 +62,8 @@ pub struct MaterialDesc {
     pub roughness: ScalarInput,
     /// True where light that scatters between microfacets is not lost.
     pub multiscatter: bool,
-    /// Index of refraction.
-    pub ior: f64,
+    /// Index of refraction; 0 stands for an infinite one.
+    pub ior: ScalarInput,
     /// Weight of the dielectric's reflection (KHR_materials_specular).
     pub specular: ScalarInput,
     /// Tint of the dielectric's reflection at normal incidence.
@@ -276,6 +94,9 @@ pub struct MaterialDesc {
     pub emission_strength: f64,
     /// Tangent-space normals.
     pub normal: Option<NormalInput>,
+    /// True where diffuse light fades towards the smooth surface whose normal a map bends (Blender's *Bump Map
+    /// Correction*).
+    pub bump_correction: bool,
     /// Baked occlusion of indirect light: `1 + strength × (texture − 1)`; factor is the strength.
     pub occlusion: Option<ScalarInput>,
     /// No scattering: the base colour is what is seen (KHR_materials_unlit).
@@ -306,7 +127,7 @@ impl Default for MaterialDesc {
             diffuse_roughness: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(0.5),
             multiscatter: true,
-            ior: 1.5,
+            ior: ScalarInput::constant(1.5),
             specular: ScalarInput::constant(1.0),
             specular_color: ColorInput::constant([1.0; 3]),
             specular_level: ScalarInput::constant(1.0),
@@ -322,6 +143,7 @@ impl Default for MaterialDesc {
             emission: ColorInput::constant([0.0; 3]),
             emission_strength: 1.0,
             normal: None,
+            bump_correction: true,
             occlusion: None,
             unlit: false,
             holdout: false,
@@ -353,7 +175,7 @@ impl MaterialDesc {
     }
 
     /// Inputs of what scatters.
-    pub(super) fn layers(&self) -> [Option<Varying>; 29] {
+    pub(super) fn layers(&self) -> [Option<Varying>; 32] {
         let Self { coat, sheen, iridescence, anisotropy, translucent, .. } = self;
         let beneath = self.subsurface.map(|subsurface| subsurface.inputs());
         let beneath = |i: usize| beneath.map(|inputs| inputs[i]);
@@ -363,6 +185,7 @@ impl MaterialDesc {
             Some(of_color(&self.metal_edge)),
             Some(of_scalar(&self.diffuse_roughness)),
             Some(of_scalar(&self.roughness)),
+            Some(of_scalar(&self.ior)),
             Some(of_scalar(&self.specular)),
             Some(of_color(&self.specular_color)),
             Some(of_scalar(&self.specular_level)),
@@ -377,11 +200,13 @@ impl MaterialDesc {
             translucent.as_ref().map(|t| of_color(&t.color)),
             coat.as_ref().map(|c| of_scalar(&c.weight)),
             coat.as_ref().map(|c| of_scalar(&c.roughness)),
+            coat.as_ref().map(|c| of_scalar(&c.ior)),
             coat.as_ref().map(|c| of_color(&c.tint)),
             coat.as_ref().and_then(|c| c.normal).map(of_normal),
             sheen.as_ref().map(|s| of_color(&s.color)),
             sheen.as_ref().map(|s| of_scalar(&s.roughness)),
             iridescence.as_ref().map(|i| of_scalar(&i.weight)),
+            iridescence.as_ref().map(|i| of_scalar(&i.ior)),
             iridescence.as_ref().map(|i| of_scalar(&i.thickness)),
             anisotropy.as_ref().map(|a| of_scalar(&a.strength)),
             anisotropy.as_ref().map(|a| of_scalar(&a.rotation)),
@@ -389,19 +214,4 @@ impl MaterialDesc {
             anisotropy.as_ref().map(|a| (None, a.tangent)),
         ]
     }
-}
-
-/// What varies an input: a texture, a value of the graph.
-pub(super) type Varying = (Option<TextureRef>, Option<ValueId>);
-
-pub(super) fn of_color(input: &ColorInput) -> Varying {
-    (input.texture, input.graph)
-}
-
-pub(super) fn of_scalar(input: &ScalarInput) -> Varying {
-    (input.texture.map(|(texture, _)| texture), input.graph)
-}
-
-pub(super) fn of_normal(input: NormalInput) -> Varying {
-    (input.texture(), input.value())
 }

@@ -12,6 +12,8 @@ mod check;
 mod closure;
 pub mod graph;
 mod image;
+mod input;
+mod layers;
 mod light;
 mod material;
 mod mesh;
@@ -27,14 +29,13 @@ pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
 pub use image::{ColorSpace, ImageDesc, PixelData};
+pub use input::{Channel, ColorInput, NormalInput, ScalarInput};
+pub use layers::{AnisotropyDesc, AnisotropyLaw, CoatDesc, IridescenceDesc, SheenDesc, TranslucentDesc, VolumeDesc};
 pub use light::{
     ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
     ShapedDesc, ShapingDesc,
 };
-pub use material::{
-    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
-};
+pub use material::{AlphaMode, MaterialDesc};
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::{Conform, ProductDesc, RenderDesc};
 pub use rounds::{RoundsDesc, Strand};

@@ -1,6 +1,6 @@
 //! Light that scatters beneath a surface, as authored.
 
-use super::material::{Varying, of_color, of_scalar};
+use super::input::{Varying, of_color, of_scalar};
 use super::{ColorInput, ScalarInput};
 
 /// What the radius means, and how light goes in.

@@ -5,7 +5,7 @@ use crate::bsdf::{Bsdf, ByLobe};
 use crate::light::{Choice, Emitter, LightSample, Receiver, Rules};
 use crate::math::{Frame, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler, power_heuristic};
-use crate::scene::{Interaction, Scene};
+use crate::scene::{Interaction, Media, Scene};
 
 /// A surface that asks for light.
 pub struct Shading<'a> {
@@ -17,6 +17,8 @@ pub struct Shading<'a> {
     pub bsdf: &'a Bsdf,
     /// Index of random decisions.
     pub vertex: u32,
+    /// What is around it on the side of `it.wo`.
+    pub media: &'a Media,
 }
 
 /// Light of one sample.
@@ -55,7 +57,7 @@ impl Shading<'_> {
         if unoccluded.sum().is_black() {
             return None;
         }
-        Some(DirectLight { unoccluded, visibility: visibility(scene, self.it, wi, end, rules), rules })
+        Some(DirectLight { unoccluded, visibility: self.visibility(scene, wi, end, rules), rules })
     }
 
     /// Diffuse light of one sample of one light, of `group` if one is given, by light sampling alone.
@@ -86,7 +88,7 @@ impl Shading<'_> {
         if response.is_black() {
             return None;
         }
-        let visibility = visibility(scene, self.it, wi, end, rules);
+        let visibility = self.visibility(scene, wi, end, rules);
         Some(DirectLight { unoccluded: response * (li * (1.0 / pdf)), visibility, rules })
     }
 
@@ -106,11 +108,21 @@ impl Shading<'_> {
         if scene.is_caught(&ray) {
             return None;
         }
-        Some([irradiance * scene.arriving(&ray, rules), irradiance])
+        Some([irradiance * scene.arriving(&ray, rules, self.media), irradiance])
     }
 
     fn decision(&self, decision: Decision) -> Dimension {
         Dimension::at_bounce(self.vertex, decision)
+    }
+
+    fn visibility(&self, scene: &Scene, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
+        let ray = scene.shadow_ray(self.it, wi, end);
+        if !scene.effects.absorption {
+            return scene.arriving(&ray, rules, self.media);
+        }
+        let mut media = *self.media;
+        scene.pass_boundary(&mut media, self.it, wi);
+        scene.arriving(&ray, rules, &media)
     }
 }
 
@@ -119,10 +131,6 @@ fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> O
     let light = scene.lights.get(choice.light);
     let sample = light.emitter.sample_li(at, choice.u, u)?;
     Some((LightSample { pdf: sample.pdf * choice.pmf, ..sample }, &light.rules))
-}
-
-fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
-    scene.arriving(&scene.shadow_ray(it, wi, end), rules)
 }
 
 /// True where the normal of a map and the one that it bends disagree on which side `wi` is.

@@ -6,7 +6,6 @@ mod direct;
 mod disk;
 mod first_hit;
 mod guide;
-mod media;
 mod path;
 mod scattering;
 mod shadow;

@@ -8,7 +8,7 @@
 use super::scattering::Scattering;
 use crate::light::{Emitter, EmitterHit, Rules};
 use crate::math::{Ray, Rgb};
-use crate::scene::{PathState, RayCone, Scene, mask};
+use crate::scene::{Media, PathState, RayCone, Scene, mask};
 
 /// Triangles of emissive objects that one ray may pass before the rest is left out.
 const MAX_EMITTERS: u32 = 1024;
@@ -24,11 +24,11 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Share of it that arrives at the origin of `ray`.
-    pub fn visibility(&self, scene: &Scene, ray: &Ray) -> Rgb {
+    /// Share of it that arrives at the origin of `ray`, within `media`.
+    pub fn visibility(&self, scene: &Scene, ray: &Ray, media: &Media) -> Rgb {
         // Ends before the emitter, which may itself be something that stops light.
         let t_max = self.dist * (1.0 - 1e-5);
-        scene.arriving(&Ray { t_max, ..*ray }, self.rules)
+        scene.arriving(&Ray { t_max, ..*ray }, self.rules, media)
     }
 }
 

@@ -26,7 +26,7 @@ pub struct Effects {
     pub catchers: bool,
     /// Some graph asks which path a ray is part of.
     pub light_path: bool,
-    /// Some surface is a transmissive solid that absorbs.
+    /// Light that gets into some surface is absorbed there.
     pub absorption: bool,
     /// Baked occlusion maps are applied.
     pub occlusion_maps: bool,
@@ -85,7 +85,7 @@ impl Effects {
             holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
             catchers: scene.instances.iter().any(|instance| instance.catcher),
             light_path: any(&asks_path),
-            absorption: any(&absorbs),
+            absorption: any(&|m| absorbs(scene, m)),
             lamps,
             emissive: emissive || unlit,
             shaped_emission: emissive && scene.instances.iter().any(|instance| instance.shaped.is_some()),
@@ -190,12 +190,15 @@ fn has_vertex_alpha(scene: &SceneDesc) -> bool {
 }
 
 /// True where some light can be refracted into the material.
-pub(super) fn transmits(material: &MaterialDesc) -> bool {
+fn transmits(material: &MaterialDesc) -> bool {
     scalar_can_be_positive(&material.transmission)
+        || material.translucent.is_some()
+        || material.parts.iter().any(|part| part.closure.transmits())
 }
 
-fn absorbs(material: &MaterialDesc) -> bool {
-    transmits(material)
+/// True where light that gets into the material is absorbed there.
+fn absorbs(scene: &SceneDesc, material: &MaterialDesc) -> bool {
+    (transmits(material) || lets_pass(material) || !is_opaque(scene, material))
         && material.volume.is_some_and(|v| {
             scalar_can_be_positive(&v.thickness)
                 && v.attenuation_distance.is_finite()

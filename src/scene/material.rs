@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::shading::Bends;
 use super::spot::{Around, Spot, Values};
-use super::{Interaction, Scene};
+use super::{Interaction, Interior, Scene};
 use crate::bsdf::Closure;
 use crate::desc::graph::Value;
 use crate::math::Rgb;
@@ -136,10 +136,8 @@ pub struct Material {
     pub opacity: Opacity,
     /// What passes unscattered on top of what the surface does; `None` for nothing.
     pub transparency: Option<ColorInput>,
-    /// No inside: light passes straight on.
-    pub thin: bool,
-    /// Absorption of the inside per metre; black for none.
-    pub absorption: Rgb,
+    /// What fills the inside; `None` where there is none and light passes straight on.
+    pub interior: Option<Interior>,
     /// Emitted radiance; of an unlit material its color.
     pub emission: ColorInput,
     /// True where nothing scatters and the emission is what is seen.
@@ -148,7 +146,7 @@ pub struct Material {
     pub holdout: bool,
     /// Normal map.
     pub normal: Option<NormalInput>,
-    /// True where its normals, or those of a part, are not those of the shape.
+    /// True where diffuse light fades towards the smooth surface, as its normals or those of a part are bent from it.
     pub bumps: bool,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
@@ -383,6 +381,11 @@ impl Material {
     /// True where some light may pass it unscattered.
     pub fn is_cutout(&self) -> bool {
         self.opacity != Opacity::Opaque || self.transparency.is_some()
+    }
+
+    /// True where its inside absorbs light.
+    pub fn absorbs(&self) -> bool {
+        self.interior.is_some_and(|interior| !interior.sigma.is_black())
     }
 
     /// True where light may go beneath it and come out elsewhere.

@@ -11,6 +11,7 @@ mod inside;
 mod instance;
 mod interaction;
 mod material;
+mod media;
 mod path_state;
 mod prepare;
 mod shading;
@@ -26,6 +27,7 @@ pub use ids::Ids;
 pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::{Coverage, Material};
+pub use media::{Interior, Media};
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use terminator::Terminator;
@@ -75,6 +77,8 @@ pub struct Scene {
     bvh: Bvh,
     /// By instance, the shape alone where light may walk in its inside; empty where it does so nowhere.
     insides: Vec<Option<Bvh>>,
+    /// Those of the instances whose insides absorb light, and which instances they are; `None` where there are none.
+    absorbing: Option<(Bvh, Vec<u32>)>,
     shapes: Vec<Shape>,
     instances: Vec<Instance>,
     materials: Vec<Material>,

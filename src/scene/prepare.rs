@@ -151,6 +151,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         insides: geometry.insides,
+        absorbing: geometry.absorbing,
         shapes: geometry.shapes,
         instances: geometry.instances,
         materials,

@@ -44,43 +44,56 @@ pub struct Anisotropy {
 }
 
 impl Scene {
-    /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it,
-    /// `blur` what its highlights are widened by.
-    pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32, blur: Blur) -> Bsdf {
+    /// Makes `bsdf` what scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of
+    /// all of it, `blur` what its highlights are widened by.
+    pub fn fill_bsdf(&self, bsdf: &mut Bsdf, it: &Interaction, frame: &Frame, share: f32, blur: Blur) {
         let material = self.material(it);
-        let mut builder = self.builder(it, frame);
+        let mut builder = self.builder(bsdf, it, frame);
         let widening = self.widening(it, blur, |it| self.shading_frame(it).n);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);
         for part in &material.parts {
             let evaluate = || part.closure.map(|color| lookups.color(color), |scalar| lookups.scalar(scalar));
-            let mut closure = part.fixed.unwrap_or_else(evaluate);
-            if let Closure::Layered(surface) = &mut closure
-                && let Some([r, g, b, _]) = self.vertex_color(it)
-            {
-                let color = Rgb::new(r, g, b);
-                surface.base_color *= color;
-                if let Some(subsurface) = &mut surface.subsurface {
-                    subsurface.color *= color;
+            let tint = if matches!(part.closure, Closure::Layered(_)) { self.vertex_color(it) } else { None };
+            let mut own;
+            let closure = match &part.fixed {
+                Some(fixed) if tint.is_none() && part.bends.is_none() => {
+                    builder.set_normal(None);
+                    fixed
                 }
-            }
-            let normal = part.bends.is_some().then(|| self.bend(it, frame, part, &lookups, &mut closure)).flatten();
-            builder.set_normal(normal);
+                fixed => {
+                    own = match fixed {
+                        Some(fixed) => *fixed,
+                        None => evaluate(),
+                    };
+                    if let (Closure::Layered(surface), Some([r, g, b, _])) = (&mut own, tint) {
+                        let color = Rgb::new(r, g, b);
+                        surface.base_color *= color;
+                        if let Some(subsurface) = &mut surface.subsurface {
+                            subsurface.color *= color;
+                        }
+                    }
+                    let bent = part.bends.is_some();
+                    builder.set_normal(bent.then(|| self.bend(it, frame, part, &lookups, &mut own)).flatten());
+                    &own
+                }
+            };
             builder.set_widening(match part.bends.as_ref().and_then(|bends| bends.normal) {
                 Some(source) if blur != Blur::default() => {
                     self.widening(it, blur, |it| self.normal_of_part(it, frame, &source))
                 }
                 _ => widening,
             });
-            builder.add(Rgb::splat(lookups.scalar(&part.weight).max(0.0) * share), &closure);
+            builder.add(Rgb::splat(lookups.scalar(&part.weight).max(0.0) * share), closure);
         }
-        builder.finish()
+        builder.finish();
     }
 
-    /// For what scatters at `it`, in the shading frame `frame`.
-    pub fn builder(&self, it: &Interaction, frame: &Frame) -> Builder {
+    /// For what scatters at `it`, in the shading frame `frame`, to be made in `bsdf`.
+    #[inline]
+    pub fn builder<'b>(&self, bsdf: &'b mut Bsdf, it: &Interaction, frame: &Frame) -> Builder<'b> {
         let side = if it.front { 1.0 } else { -1.0 };
-        let mut builder = Builder::new(frame.to_local(it.wo), frame.to_local(it.ng * side), it.front);
+        let mut builder = Builder::new(bsdf, frame.to_local(it.wo), frame.to_local(it.ng * side), it.front);
         let bumps = self.material(it).bumps;
         let frequency = self.instance(it.instance).terminator.frequency;
         if it.ns != it.ng {

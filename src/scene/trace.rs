@@ -1,6 +1,6 @@
 //! Rays into the scene: what they hit, and how much light a segment lets through.
 
-use super::{Interaction, PathState, Scene, mask};
+use super::{Interaction, Media, PathState, Scene, mask};
 use crate::bvh::Hit;
 use crate::light::{Emitter, Light, Rules, Shadow, ShadowLook};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
@@ -30,45 +30,52 @@ impl Scene {
         self.bvh.closest_hit(ray, mask)
     }
 
-    /// Share of the light of an emitter with `rules` that arrives where `ray` begins, from as far as it goes.
-    pub fn arriving(&self, ray: &Ray, rules: &Rules) -> Rgb {
+    /// Share of the light of an emitter with `rules` that arrives where `ray` begins, within `media`, from as far as it
+    /// goes.
+    pub fn arriving(&self, ray: &Ray, rules: &Rules, media: &Media) -> Rgb {
         match &rules.look {
-            None => self.transmittance(ray, rules.shadow),
-            Some(look) => self.arriving_beside(ray, rules.shadow, look),
+            None => self.transmittance(ray, rules.shadow, media),
+            Some(look) => self.arriving_beside(ray, rules.shadow, look, media),
         }
     }
 
-    /// Share of light that passes along `ray`: black behind an opaque surface, the product of what
-    /// passes through cut-outs and blends; only what `shadow` names stops it.
-    pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> Rgb {
+    /// Share of light that passes along `ray`, which begins within `media`: black behind an opaque surface, the product
+    /// of what passes through cut-outs and blends; only what `shadow` names stops it.
+    pub fn transmittance(&self, ray: &Ray, shadow: Shadow, media: &Media) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         if self.bvh.any_hit(ray, opaque) {
             return Rgb::BLACK;
         }
-        if self.effects.cutouts { self.passed(ray, cutout, |_| 1.0) } else { Rgb::WHITE }
+        let passes = self.effects.cutouts || self.effects.absorption;
+        if passes { self.passed(ray, cutout, |_| 1.0, media) } else { Rgb::WHITE }
     }
 
     /// [`Self::arriving`] beside shadows that look as `look` says.
     // Out of line, so that other lights have no part in it.
     #[cold]
-    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook) -> Rgb {
+    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook, media: &Media) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         let length = ray.d.length();
         let ray = Ray { t_max: ray.t_max.min(look.distance() / length), ..*ray };
         look.arriving(match look.fades() {
             // Which opaque blocker is the nearest matters.
-            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length)),
-            false => self.transmittance(&ray, shadow),
+            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length), media),
+            false => self.transmittance(&ray, shadow, media),
         })
     }
 
     /// What passes the surfaces that `mask` sees, up to the first opaque one; one at `t` along `ray` counts for the
     /// share `strength(t)`.
-    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32) -> Rgb {
+    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32, media: &Media) -> Rgb {
         let mut left = Rgb::WHITE;
         let (mut rest, mut t) = (*ray, 0.0);
+        let mut within = self.effects.absorption.then(|| (*media, ray.d.length()));
         for _ in 0..MAX_TRANSPARENT {
-            let Some(hit) = self.closest_hit(&rest, mask) else { return left };
+            let hit = self.closest_hit(&rest, mask);
+            if let Some((media, length)) = &within {
+                left *= media.transmitted(hit.map_or(rest.t_max, |hit| hit.t) * length);
+            }
+            let Some(hit) = hit else { return left };
             let mut it = self.interaction(&rest, &hit, RayCone { width: 0.0, spread: 0.0 });
             if self.effects.light_path {
                 it.path = PathState { length: hit.t, ..PathState::SHADOW };
@@ -78,6 +85,9 @@ impl Scene {
             left *= Rgb::WHITE.lerp(passes, strength(t));
             if passes.is_black() || left.is_black() {
                 return left;
+            }
+            if let Some((media, _)) = &mut within {
+                self.pass_boundary(media, &it, rest.d);
             }
             rest = it.continued(&rest, hit.t);
         }

@@ -724,3 +724,138 @@ def filter_glossy():
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=0.5)
     world(0.1)
     bpy.context.scene["blur_glossy"] = 1.0
+
+
+def _filled(matter, node_type, **inputs):
+    """Links a shader to the Volume socket of a material; of None a new one without surface."""
+    if matter is None:
+        matter = material("Volume", "ShaderNodeEmission")
+        matter.node_tree.nodes.remove(next(node for node in matter.node_tree.nodes if node.type == "EMISSION"))
+    tree = matter.node_tree
+    shader = tree.nodes.new(node_type)
+    for key, value in inputs.items():
+        shader.inputs[key.replace("_", " ")].default_value = value
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+    tree.links.new(shader.outputs[0], output.inputs["Volume"])
+    return matter
+
+
+def _box(size, location, matter, scale=(1.0, 1.0, 1.0)):
+    bpy.ops.mesh.primitive_cube_add(size=size, location=location)
+    bpy.context.object.scale = scale
+    bpy.context.object.data.materials.append(matter)
+    return bpy.context.object
+
+
+def _volume_limits():
+    """Cycles' own ways through volumes: no bounce within, exact for volumes that are the same everywhere."""
+    bpy.context.scene.cycles.volume_bounces = 0
+
+
+def murky():
+    """Boxes of absorption alone before a lit floor: two that overlap, one that casts its shadow on all."""
+    room()
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.3)
+    _box(1.0, (-1.3, -1.0, 0.8), _filled(None, "ShaderNodeVolumeAbsorption", Color=(0.9, 0.5, 0.2, 1.0), Density=1.5))
+    _box(0.8, (-0.9, -1.4, 0.95), _filled(None, "ShaderNodeVolumeAbsorption", Color=(0.2, 0.6, 0.9, 1.0), Density=2.0))
+    _box(1.2, (1.5, -0.2, 1.6), _filled(None, "ShaderNodeVolumePrincipled", Color=(0.0, 0.0, 0.0, 1.0), Density=1.2,
+                                       Absorption_Color=(0.6, 0.2, 0.1, 1.0)))
+    _volume_limits()
+
+
+def submerged():
+    """Camera, lamp and room within one volume."""
+    room()
+    lamp("POINT", (1.2, -0.8, 2.0), energy=300.0, shadow_soft_size=0.3)
+    _box(30.0, (0.0, 0.0, 0.0), _filled(None, "ShaderNodeVolumeAbsorption", Color=(0.95, 0.85, 0.7, 1.0), Density=0.8))
+    _volume_limits()
+
+
+def tinted_glass():
+    """Glass and thin alpha with something inside of them, a ball in the glass."""
+    room(material("Plain", "ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7, 1.0)))
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    glass = material("Glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.3)
+    _box(1.2, (-1.0, -1.2, 0.7), _filled(glass, "ShaderNodeVolumeAbsorption", Color=(0.3, 0.8, 0.5, 1.0), Density=2.0))
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=0.3, location=(-1.0, -1.2, 0.7))
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(material("Core", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.6, 0.5, 1.0)))
+    veil = material("Veil", Alpha=0.3, Base_Color=(0.8, 0.3, 0.3, 1.0))
+    _box(1.0, (1.0, -1.2, 0.7), _filled(veil, "ShaderNodeVolumeAbsorption", Color=(0.5, 0.5, 0.9, 1.0), Density=1.5))
+    world(0.8)
+    _volume_limits()
+
+
+def _uv_of(obj, name, turn):
+    """Adds a UV map: the first one turned about the middle."""
+    first = obj.data.uv_layers[0]
+    points = [tuple(loop.uv) for loop in first.data]
+    layer = obj.data.uv_layers.new(name=name)
+    cos, sin = math.cos(turn), math.sin(turn)
+    for loop, (u, v) in zip(layer.data, points):
+        loop.uv = (0.5 + cos * (u - 0.5) - sin * (v - 0.5), 0.5 + sin * (u - 0.5) + cos * (v - 0.5))
+    obj.data.uv_layers.active = obj.data.uv_layers[0]
+    obj.data.uv_layers[0].active_render = True
+
+
+def brushed_by_map():
+    """Metal that is brushed along a UV map which is not the one to render with, beside the one that is."""
+    room()
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    for x, name in ((-1.2, "Second"), (1.2, "")):
+        matter = material(f"Brushed {name}", Metallic=1.0, Roughness=0.4, Anisotropic=0.9,
+                          Base_Color=(0.9, 0.7, 0.4, 1.0))
+        tree = matter.node_tree
+        tangent = tree.nodes.new("ShaderNodeTangent")
+        tangent.direction_type, tangent.uv_map = "UV_MAP", name
+        shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+        tree.links.new(tangent.outputs[0], shader.inputs["Tangent"])
+        bpy.ops.mesh.primitive_plane_add(size=2.2, location=(x, -1.0, 0.4), rotation=(0.3, 0.0, 0.0))
+        _uv_of(bpy.context.object, "Second", 1.0)
+        bpy.context.object.data.materials.append(matter)
+    lamp("AREA", (0.5, 1.5, 2.5), (-0.5, 0.1, 0.0), energy=150.0, size=0.5)
+    world(0.05)
+
+
+def varying_index():
+    """Indices of refraction that follow a texture: of a dielectric, its coat, and a film on metal."""
+    def varying(name, low, high, **inputs):
+        def with_index(socket):
+            matter = material(socket, **inputs)
+            tree = matter.node_tree
+            coordinates, waves, span = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "TexWave", "MapRange"))
+            waves.inputs["Scale"].default_value = 1.0
+            span.inputs["To Min"].default_value, span.inputs["To Max"].default_value = low, high
+            tree.links.new(coordinates.outputs["Object"], waves.inputs["Vector"])
+            tree.links.new(waves.outputs["Fac"], span.inputs["Value"])
+            shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+            tree.links.new(span.outputs[0], shader.inputs[socket])
+            return matter
+        return with_index(name)
+
+    room()
+    for obj in [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.dimensions.x < 2]:
+        bpy.data.objects.remove(obj)
+    dark = {"Base_Color": (0.05, 0.05, 0.05, 1.0), "Roughness": 0.3}
+    film = {"Metallic": 1.0, "Roughness": 0.3, "Thin_Film_Thickness": 400.0, "Base_Color": (0.7, 0.7, 0.7, 1.0)}
+    if bpy.app.version < (5, 0, 0):
+        # Films are those of dielectrics up to 4.5.
+        film = {**dark, "Thin_Film_Thickness": 400.0}
+    balls = [varying("IOR", 1.0, 2.5, **dark),
+             varying("Coat IOR", 1.0, 2.5, Coat_Weight=1.0, Coat_Roughness=0.2, **dark),
+             varying("Thin Film IOR", 1.1, 2.0, **film)]
+    for i, matter in enumerate(balls):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.7, location=(1.6 * i - 1.6, -1.2, 0.8))
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(matter)
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.5)
+
+
+def uncorrected():
+    """Bumps of a material without Bump Map Correction."""
+    bumpy()
+    bpy.data.materials["Waves"].cycles.use_bump_map_correction = False

@@ -51,6 +51,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
              "sky_preetham", "holdout", "thin", "rough_diffuse", "glossy", "stretched", "coated", "cloth", "mixed_shaders",
              "leaf", "red_film", "glow", "filter_glossy", "wax", "skin", "burley", "candle", "coarse", "bumpy",
+             "uncorrected", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
              "catcher", "hair", "hair_curves_bent", "particle_fur", "particle_instances"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
@@ -184,12 +185,13 @@ def test_a_world_by_the_camera_is_that_of_each_view(blender, tmp_path):
 
 def test_panels_are_those_of_cycles_where_they_hold(blender):
     ours = blender.run("panels_of", "PENUMBRA")[0]
-    assert {"CYCLES_MATERIAL_PT_surface", "CYCLES_PT_context_material", "CYCLES_MATERIAL_PT_preview", "CYCLES_WORLD_PT_surface",
+    assert {"CYCLES_MATERIAL_PT_surface", "CYCLES_MATERIAL_PT_volume", "CYCLES_PT_context_material", "CYCLES_MATERIAL_PT_preview",
+            "CYCLES_WORLD_PT_surface",
             "PENUMBRA_PT_sampling_render", "PENUMBRA_PT_passes_shadow", "CYCLES_OBJECT_PT_visibility"} <= set(ours["mesh"])
     assert {"CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_nodes", "CYCLES_LIGHT_PT_preview"} <= set(ours["lamp"])
     # Nothing twice, and nothing that means nothing here.
     for shown in ours.values():
-        assert not {"DATA_PT_light", "MATERIAL_PT_preview", "CYCLES_RENDER_PT_sampling", "CYCLES_MATERIAL_PT_volume"} & set(shown)
+        assert not {"DATA_PT_light", "MATERIAL_PT_preview", "CYCLES_RENDER_PT_sampling", "CYCLES_WORLD_PT_volume"} & set(shown)
     # For Cycles all is as it was.
     theirs = blender.run("panels_of", "CYCLES")[0]
     assert "CYCLES_RENDER_PT_sampling_render" in theirs["mesh"] and "CYCLES_LIGHT_PT_light" in theirs["lamp"]

@@ -69,7 +69,7 @@ fn values_of_the_roundtrip_files() {
     assert_eq!((v.attenuation_color, v.attenuation_distance), ([0.1, 0.5, 0.9], 0.666_666_666_7));
     let v = named(&volume, "NoThickness").volume.unwrap();
     assert_eq!((v.thickness.factor, v.attenuation_distance), (0.0, f64::INFINITY));
-    assert_eq!(named(&load("17_ior").unwrap(), "ior_1.45").ior, 1.45);
+    assert_eq!(named(&load("17_ior").unwrap(), "ior_1.45").ior.factor, 1.45);
     assert_eq!(load("01_alpha_mask").unwrap().materials[0].alpha_mode, AlphaMode::Mask { cutoff: 0.42 });
     assert_eq!(named(&load("01_alpha_blend").unwrap(), "Transparent_Plane").alpha_mode, AlphaMode::Blend);
 }

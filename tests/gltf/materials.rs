@@ -89,7 +89,7 @@ fn every_material_extension() {
     let m = material(&scene);
     let channel = |input: penumbra::desc::ScalarInput| (input.factor, input.texture.unwrap().1);
     assert_eq!(channel(m.transmission), (0.9, Channel::R));
-    assert_eq!((m.ior, m.dispersion, m.unlit, m.emission_strength), (1.7, 0.33, true, 12.0));
+    assert_eq!((m.ior.factor, m.dispersion, m.unlit, m.emission_strength), (1.7, 0.33, true, 12.0));
     let volume = m.volume.unwrap();
     assert_eq!((channel(volume.thickness), volume.attenuation_distance), ((2.0, Channel::G), 3.0));
     assert_eq!(volume.attenuation_color, [0.1, 0.2, 0.3]);
@@ -97,11 +97,11 @@ fn every_material_extension() {
     let coat = m.coat.unwrap();
     let NormalInput::Map { scale, .. } = coat.normal.unwrap() else { panic!() };
     assert_eq!((channel(coat.weight), channel(coat.roughness)), ((0.7, Channel::R), (0.2, Channel::G)));
-    assert_eq!((scale, coat.ior), (2.0, 1.5));
+    assert_eq!((scale, coat.ior.factor), (2.0, 1.5));
     let sheen = m.sheen.unwrap();
     assert_eq!((sheen.color.factor, channel(sheen.roughness)), ([0.3, 0.2, 0.1], (0.4, Channel::A)));
     let film = m.iridescence.unwrap();
-    assert_eq!((channel(film.weight), film.ior), ((0.6, Channel::R), 1.4));
+    assert_eq!((channel(film.weight), film.ior.factor), ((0.6, Channel::R), 1.4));
     assert_eq!((film.thickness_min, film.thickness_max), (50.0, 500.0));
     assert_eq!(film.thickness.texture.unwrap().1, Channel::G);
     let anisotropy = m.anisotropy.unwrap();
@@ -121,7 +121,7 @@ fn specular_glossiness_keeps_its_reflectance() {
     }}})));
     let m = material(&scene);
     assert_eq!((m.base_color.factor, m.alpha.factor, m.metallic.factor), ([0.5, 0.4, 0.3], 0.2, 0.0));
-    assert_eq!((m.roughness.factor, m.ior), (0.25, 1.5));
+    assert_eq!((m.roughness.factor, m.ior.factor), (0.25, 1.5));
     for (color, expected) in m.specular_color.factor.iter().zip([0.2, 0.1, 0.04]) {
         assert!((0.04 * color - expected).abs() < 1e-12);
     }

@@ -242,6 +242,7 @@ class Exporter:
             "name": material.name,
             "pass_index": material.pass_index,
             "diffuse_color": list(material.diffuse_color),
+            "bump_correction": getattr(getattr(material, "cycles", None), "use_bump_map_correction", True),
         }
         self._moves = False
         if material.node_tree is not None and material.use_nodes:

@@ -20,7 +20,7 @@ pub fn describe(material: &MaterialDesc, scene: &SceneDesc) -> Value {
         "base_color": color(&material.base_color),
         "metallic": scalar(&material.metallic),
         "roughness": scalar(&material.roughness),
-        "ior": material.ior,
+        "ior": scalar(&material.ior),
         "specular_color": color(&material.specular_color),
         "emission": color(&material.emission),
         "alpha": scalar(&material.alpha),

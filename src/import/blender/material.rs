@@ -47,6 +47,7 @@ fn material(
         name: data.name.as_str().into(),
         place: place.at(&data.name),
         material_index: data.pass_index,
+        bump_correction: data.bump_correction,
         ..MaterialDesc::default()
     };
     match &data.nodes {

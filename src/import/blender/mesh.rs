@@ -58,6 +58,13 @@ pub struct Dress {
     pub uv_maps: Vec<String>,
     /// Tangents of the UV map to render with.
     pub tangents: bool,
+    /// UV maps beside that one whose tangents are wanted, as attributes; see [`tangents_of`].
+    pub tangent_maps: Vec<String>,
+}
+
+/// Name of the attribute that holds the tangents of a UV map, which no attribute of Blender's has.
+pub fn tangents_of(uv_map: &str) -> String {
+    format!("tangents of \u{0}{uv_map}")
 }
 
 impl NamedMesh {
@@ -96,6 +103,15 @@ impl NamedMesh {
             && let Some(uvs) = mesh.uvs.first()
         {
             mesh.tangents = tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles);
+        }
+        for name in &dress.tangent_maps {
+            let index = self.uv_names.iter().position(|known| **known == **name);
+            let tangents = index
+                .and_then(|index| self.mesh.uvs.get(index))
+                .and_then(|uvs| tangents::generate(&mesh.points, mesh.normals.as_ref(), uvs, &mesh.triangles));
+            if let Some(values) = tangents {
+                mesh.attributes.push(NamedAttribute { name: tangents_of(name).into(), values });
+            }
         }
         let none = || Attribute::Point(vec![[0.0, 1.0]; mesh.points.len()]);
         let named = |name: &String| {

@@ -1,6 +1,6 @@
 //! A scene of Blender's, kept between renders so that only what changes is handed over again.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::document::{Document, MaterialData};
@@ -222,7 +222,15 @@ impl BlenderScene {
     fn add_instances(&mut self, desc: &mut SceneDesc, warnings: &mut Warnings) -> Vec<Vec<u32>> {
         let document = &self.document;
         let trees = || document.materials.iter().filter_map(|material| material.nodes.as_ref());
-        let dress = Dress { uv_maps: self.uv_sets().names().to_vec(), tangents: trees().any(TreeData::needs_tangents) };
+        let uv_sets = self.uv_sets();
+        let asked: BTreeSet<String> = trees().flat_map(TreeData::tangent_map_names).collect();
+        // Those of set 0 are tangents of their own.
+        let beside = |name: &String| uv_sets.set(name).is_some_and(|set| set != 0);
+        let dress = Dress {
+            uv_maps: uv_sets.names().to_vec(),
+            tangents: asked.iter().any(|name| !beside(name)),
+            tangent_maps: asked.iter().filter(|name| beside(name)).cloned().collect(),
+        };
         let default = material::default_index(document);
         let mut known: HashMap<u64, ShapeRef> = HashMap::new();
         let mut of_object = vec![Vec::new(); document.objects.len()];

@@ -102,10 +102,10 @@ impl Converter<'_, '_> {
                     *c /= F0_OF_1_5;
                 }
             }
-            Some(ior) if ior >= 1.0 => material.ior = ior,
+            Some(ior) if ior >= 1.0 => material.ior = ScalarInput::constant(ior),
             Some(ior) => {
                 self.warnings.push(self.place, format!("index of refraction {ior} is below 1; 1 is used"));
-                material.ior = 1.0;
+                material.ior = ScalarInput::constant(1.0);
             }
             None => {}
         }
@@ -120,6 +120,7 @@ impl Converter<'_, '_> {
                 thickness: self.linear(volume.thickness_factor.max(0.0), thickness, Channel::G),
                 attenuation_distance: distance,
                 attenuation_color: volume.attenuation_color.map(|c| self.unit(c, "attenuation color")),
+                adds: false,
             });
         }
     }
@@ -134,7 +135,7 @@ impl Converter<'_, '_> {
                 Channel::G,
                 "clearcoat roughness",
             ),
-            ior: 1.5,
+            ior: ScalarInput::constant(1.5),
             tint: ColorInput::constant([1.0; 3]),
             normal: self.normal(coat.clearcoat_normal_texture.as_ref()),
         });
@@ -149,7 +150,7 @@ impl Converter<'_, '_> {
         });
         material.iridescence = x.iridescence.as_ref().map(|film| IridescenceDesc {
             weight: self.scalar(film.iridescence_factor, film.iridescence_texture.as_ref(), Channel::R, "iridescence"),
-            ior: film.iridescence_ior.max(1.0),
+            ior: ScalarInput::constant(film.iridescence_ior.max(1.0)),
             thickness_min: film.iridescence_thickness_minimum.max(0.0),
             thickness_max: film.iridescence_thickness_maximum.max(0.0),
             thickness: self.scalar(
@@ -176,7 +177,7 @@ impl Converter<'_, '_> {
         material.base_color = self.unit_color([r, g, b], diffuse, "diffuse");
         material.alpha = self.alpha(a, diffuse);
         material.metallic = ScalarInput::constant(0.0);
-        material.ior = 1.5;
+        material.ior = ScalarInput::constant(1.5);
         material.specular = ScalarInput::constant(1.0);
         let specular = old.specular_factor.map(|c| self.unit(c, "specular") / F0_OF_1_5);
         material.specular_color = self.color(specular, old.specular_glossiness_texture.as_ref());

@@ -26,6 +26,8 @@ pub struct Geometry {
     pub bvh: Bvh,
     /// Of each of `instances` whose inside light may walk in, a tree of its own; empty where there is none.
     pub insides: Vec<Option<Bvh>>,
+    /// The instances whose insides absorb light, and which they are.
+    pub absorbing: Option<(Bvh, Vec<u32>)>,
 }
 
 /// Prepares all shapes that are placed, in parallel; `terminator` is that of objects which have none of their own.
@@ -67,7 +69,7 @@ pub fn prepare(
     let (shapes, blases): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
-    let mut insides = Vec::new();
+    let (mut insides, mut absorbing) = (Vec::new(), Vec::new());
     for (i, instance) in desc.instances.iter().enumerate() {
         let shape = index(instance.shape);
         if shapes[shape].is_empty() {
@@ -92,13 +94,20 @@ pub fn prepare(
             let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1].clone() };
             Bvh::build(vec![blases[shape].clone()], vec![alone])
         }));
+        if prepared.materials.iter().any(|&m| materials[m as usize].absorbs()) {
+            absorbing.push(instances.len() as u32);
+        }
         instances.push(prepared);
         placed.push(i as u32);
     }
     if insides.iter().all(Option::is_none) {
         insides.clear();
     }
-    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides }
+    let absorbing = (!absorbing.is_empty()).then(|| {
+        let alone = absorbing.iter().map(|&i| boxes[i as usize].clone()).collect();
+        (Bvh::build(blases.clone(), alone), absorbing)
+    });
+    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides, absorbing }
 }
 
 /// The middle of the box of `points`, and the points relative to it.

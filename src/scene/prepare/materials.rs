@@ -2,27 +2,28 @@
 
 mod aovs;
 mod parts;
+mod textures;
+
+pub use textures::Textures;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
-use super::cache::{Cache, ReadyImage};
+use super::cache::Cache;
 use super::graphs;
 use super::mend::Mended;
 use crate::desc::graph::{Function, Graph, Leaf, Value, ValueId};
-use crate::desc::{self, AlphaMode, Channel, ImageDesc, MaterialDesc, PixelData, SceneDesc, TextureTransform};
+use crate::desc::{self, AlphaMode, Channel, MaterialDesc, SceneDesc, TextureTransform};
 use crate::error::Warnings;
 use crate::film::Aov;
 use crate::math::Rgb;
-use crate::scene::Material;
 use crate::scene::asked::Names;
 use crate::scene::effects;
 use crate::scene::material::{ColorInput, NormalInput, Opacity, Part, Programs, ScalarInput, Varying, rgb_of, single};
+use crate::scene::{Interior, Material};
 use crate::settings::Settings;
 use crate::texture::graph::Program;
-use crate::texture::{Image, Texture, TextureRef};
+use crate::texture::{Texture, TextureRef};
 
 /// Materials, and what they share.
 pub struct Materials {
@@ -50,8 +51,8 @@ pub fn prepare(
     for &material in desc.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
         used[material as usize] = true;
     }
-    let images = prepare_images(desc, &used, cache, warnings);
-    let textures = Textures { desc, images, index: vec![None; desc.textures.len()], list: Vec::new() };
+    let images = textures::images(desc, &used, cache, warnings);
+    let textures = Textures::new(desc, images);
     let mut builder = Builder { desc, settings, aovs, textures, names: Names::default() };
     let fallback = MaterialDesc::default();
     let materials = desc.materials.iter().zip(&used).map(|(material, used)| (material, *used));
@@ -67,105 +68,6 @@ pub fn prepare(
     let domes = domes.collect();
     let background = aovs::background(&mut builder);
     Materials { list, textures: builder.textures.list, names: builder.names, domes, background }
-}
-
-/// Pyramids of the images that materials in use and domes look up, in parallel.
-fn prepare_images(
-    desc: &mut SceneDesc,
-    used: &[bool],
-    cache: &mut Cache,
-    warnings: &mut Warnings,
-) -> Vec<Option<Arc<Image>>> {
-    let mut wanted = vec![false; desc.images.len()];
-    let materials = desc.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material));
-    for material in materials {
-        let plain = material.textures().map(|texture| texture.texture);
-        for texture in plain.chain(graphs::textures(material)) {
-            wanted[desc.textures[texture as usize].image as usize] = true;
-        }
-    }
-    for shader in &desc.dome_shaders {
-        for texture in graphs::looked_up(&shader.graph, [shader.radiance]) {
-            wanted[desc.textures[texture as usize].image as usize] = true;
-        }
-    }
-    let background = &desc.background_aovs;
-    for texture in graphs::looked_up(&background.graph, background.outputs.iter().flat_map(|(_, values)| *values)) {
-        wanted[desc.textures[texture as usize].image as usize] = true;
-    }
-    // Texels that light are still needed.
-    let mut lights = vec![false; desc.images.len()];
-    for image in desc.lights.iter().filter_map(|light| light.kind.image()) {
-        lights[image as usize] = true;
-    }
-    let prepared: Vec<ReadyImage> = desc
-        .images
-        .par_iter_mut()
-        .enumerate()
-        .map(|(i, image)| {
-            let mut warnings = Warnings::new();
-            if !wanted[i] {
-                return (None, warnings);
-            }
-            if let Some(known) = cache.image(image) {
-                return known;
-            }
-            let place = image.place.clone();
-            let made = Image::new(texels_of(image, lights[i]), &mut warnings);
-            let made = made.map_err(|error| warnings.push(&place, format!("{error}: taken as white")));
-            (made.ok().map(Arc::new), warnings)
-        })
-        .collect();
-    cache.keep_images(desc, &wanted, &prepared);
-    prepared
-        .into_iter()
-        .map(|(image, of_image)| {
-            warnings.extend(of_image);
-            image
-        })
-        .collect()
-}
-
-/// The image with its texels, which are taken out of it where nobody else is known to need them.
-fn texels_of(image: &mut Arc<ImageDesc>, needed: bool) -> ImageDesc {
-    match Arc::get_mut(image) {
-        Some(own) if !needed => {
-            let pixels = std::mem::replace(&mut own.pixels, PixelData::U8(Vec::new()));
-            ImageDesc { name: own.name.clone(), place: own.place.clone(), pixels, ..*own }
-        }
-        _ => ImageDesc::clone(image),
-    }
-}
-
-/// Textures of the scene, made when the first material asks.
-pub struct Textures<'a> {
-    desc: &'a SceneDesc,
-    images: Vec<Option<Arc<Image>>>,
-    /// New index of each texture that is used.
-    index: Vec<Option<u32>>,
-    list: Vec<Texture>,
-}
-
-impl Textures<'_> {
-    fn image(&self, texture: &desc::TextureRef) -> Option<&Arc<Image>> {
-        self.images[self.desc.textures[texture.texture as usize].image as usize].as_ref()
-    }
-
-    /// The one value of a texture whose texels are all the same, white for one without image.
-    pub fn constant(&self, texture: &desc::TextureRef) -> Option<[f32; 4]> {
-        let Some(image) = self.image(texture) else { return Some([1.0; 4]) };
-        Texture::new(image.clone(), &self.desc.textures[texture.texture as usize]).constant()
-    }
-
-    /// The texture of the scene that a use of one of the description is of.
-    pub fn input(&mut self, texture: &desc::TextureRef) -> Option<TextureRef> {
-        let image = self.image(texture)?.clone();
-        let index = self.index[texture.texture as usize].get_or_insert_with(|| {
-            self.list.push(Texture::new(image, &self.desc.textures[texture.texture as usize]));
-            self.list.len() as u32 - 1
-        });
-        Some(TextureRef { texture: *index, uv_set: texture.uv_set, transform: texture.transform.into() })
-    }
 }
 
 struct Builder<'a> {
@@ -365,7 +267,8 @@ impl Builder<'_> {
             aovs: self.program(inputs),
         };
         let of_part = |part: &Part| part.bends.as_ref().is_some_and(|bends| bends.normal.is_some());
-        let bumps = normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part);
+        let bumps =
+            desc.bump_correction && (normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part));
         Material {
             parts,
             alpha,
@@ -376,8 +279,7 @@ impl Builder<'_> {
                 AlphaMode::Blend => Opacity::Blend,
             },
             transparency,
-            thin: volume.is_none(),
-            absorption: volume.filter(|_| effects::transmits(desc)).map_or(Rgb::BLACK, |v| absorption(&v)),
+            interior: volume.map(|volume| Interior { sigma: absorption(&volume), adds: volume.adds }),
             emission,
             unlit: desc.unlit,
             holdout: desc.holdout,

@@ -14,13 +14,21 @@ pub struct MaterialData {
     pub pass_index: u32,
     /// `diffuse_color`, which a material without nodes has.
     pub diffuse_color: [f64; 4],
+    /// `cycles.use_bump_map_correction`.
+    pub bump_correction: bool,
     /// Its nodes; `None` where `use_nodes` is off.
     pub nodes: Option<TreeData>,
 }
 
 impl Default for MaterialData {
     fn default() -> Self {
-        Self { name: "Material".into(), pass_index: 0, diffuse_color: [0.8, 0.8, 0.8, 1.0], nodes: None }
+        Self {
+            name: "Material".into(),
+            pass_index: 0,
+            diffuse_color: [0.8, 0.8, 0.8, 1.0],
+            bump_correction: true,
+            nodes: None,
+        }
     }
 }
 

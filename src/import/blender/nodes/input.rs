@@ -1,5 +1,6 @@
 //! Nodes of the Input menu.
 
+use super::super::mesh::tangents_of;
 use super::flow::{At, Flow};
 use crate::desc::graph::{Leaf, PathInfo, Quantity, Space, ValueId};
 
@@ -140,13 +141,22 @@ pub fn camera_data<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> Valu
 /// Tangent; world space.
 pub fn tangent<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     if at.node.text("direction_type") == "UV_MAP" {
-        let tangent = flow.graph.leaf(Leaf::Tangent);
+        let tangent = tangent_of_map(flow, at.node.text("uv_map"));
         return flow.graph.transform(Quantity::Vector, Space::Object, Space::World, tangent);
     }
     if at.node.text("axis") != "Z" {
         flow.warn("radial tangents are around the z axis, whatever axis the Tangent node names");
     }
     flow.graph.leaf(Leaf::RadialTangent)
+}
+
+/// The tangent of the UV map of a name, object space, with the sign of the bitangent.
+pub fn tangent_of_map(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
+    let leaf = match flow.uv_sets.set(name) {
+        Some(set) if set != 0 => Leaf::Attribute { name: tangents_of(name).into(), fallback: [0.0; 4] },
+        _ => Leaf::Tangent,
+    };
+    flow.graph.leaf(leaf)
 }
 
 /// Fresnel.

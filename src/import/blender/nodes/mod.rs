@@ -2,7 +2,7 @@
 //!
 //! `flow.rs` walks from the output back through links, groups, reroutes and muted nodes and builds the
 //! engine's graph; each value node is a line in the table of `values.rs` and a function in the file of its
-//! menu. Shaders become a weighted sum (`closure.rs`), which is a surface (`surface.rs`), a world or a lamp.
+//! menu. Shaders become a weighted sum (`closure.rs`), which is a surface (`surface.rs`), a volume (`volume.rs`), a world or a lamp.
 
 mod aov;
 mod closure;
@@ -20,6 +20,7 @@ mod texture;
 mod tree;
 mod values;
 mod vector;
+mod volume;
 mod world;
 
 pub use tree::{NodeData, SocketData, TreeData, Value};

@@ -1,20 +1,19 @@
 //! The Principled BSDF as a layered surface.
 
 use super::flow::{At, Flow};
-use super::surface::{
-    alpha_mode, anisotropy, color, film, fixed, input, normal, number, optional, scalar, solid, subsurface,
-};
+use super::surface::{alpha_mode, anisotropy, color, film, input, normal, number, optional, scalar, solid, subsurface};
 use crate::desc::graph::{Function, Leaf, Math, ValueId};
 use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, SheenDesc, SubsurfaceDesc};
 
 /// `base` as the surface of the node alone.
 pub fn alone<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, base: MaterialDesc) -> MaterialDesc {
     let (layers, alpha, emission) = principled(flow, at);
-    let MaterialDesc { name, place, material_index, .. } = base;
+    let MaterialDesc { name, place, material_index, bump_correction, .. } = base;
     MaterialDesc {
         name,
         place,
         material_index,
+        bump_correction,
         alpha: scalar(flow, alpha),
         alpha_mode: alpha_mode(flow, alpha),
         emission: color(flow, emission),
@@ -26,7 +25,6 @@ pub fn alone<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, base: MaterialDesc) -> Mat
 pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, ValueId, ValueId) {
     let level = flow.input(at, "Specular IOR Level");
     let level = flow.graph.scale(level, 2.0);
-    let ior = flow.input(at, "IOR");
     let transmission = number(flow, at, "Transmission Weight");
     let layers = MaterialDesc {
         base_color: input(flow, at, "Base Color"),
@@ -35,7 +33,7 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
         diffuse_roughness: optional(flow, at, "Diffuse Roughness", 0.0),
         roughness: number(flow, at, "Roughness"),
         multiscatter: at.node.text("distribution") != "GGX",
-        ior: fixed(flow, ior, "the IOR", 1.5),
+        ior: number(flow, at, "IOR"),
         specular_color: input(flow, at, "Specular Tint"),
         specular_level: scalar(flow, level),
         transmission,
@@ -106,11 +104,10 @@ fn coat<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<CoatDesc> {
     if weight.factor <= 0.0 {
         return None;
     }
-    let ior = flow.input_or(at, "Coat IOR", 1.5);
     Some(CoatDesc {
         weight,
         roughness: number(flow, at, "Coat Roughness"),
-        ior: fixed(flow, ior, "the IOR of the coat", 1.5),
+        ior: optional(flow, at, "Coat IOR", 1.5),
         tint: input(flow, at, "Coat Tint"),
         normal: normal(flow, at, "Coat Normal"),
     })

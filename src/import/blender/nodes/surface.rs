@@ -8,6 +8,7 @@ use super::closure::{self, Part};
 use super::flow::{At, Flow};
 use super::lamp::emission;
 use super::principled::{self, principled};
+use super::volume;
 use crate::desc::graph::{Leaf, ValueId};
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, ClosureDesc, ColorInput, FacetsDesc, IridescenceDesc, MaterialDesc,
@@ -26,13 +27,14 @@ struct Sum {
 
 /// `base` with the surface of the tree.
 pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
-    let parts = match flow.output_node("ShaderNodeOutputMaterial") {
-        Some(output) => match output.node.input("Surface") {
-            Some(input) => closure::parts(flow, output, input),
-            None => Vec::new(),
-        },
+    let output = flow.output_node("ShaderNodeOutputMaterial");
+    let parts = match output.and_then(|output| Some((output, output.node.input("Surface")?))) {
+        Some((output, input)) => closure::parts(flow, output, input),
         None => Vec::new(),
     };
+    let inside = output.and_then(|output| volume::volume(flow, output));
+    // A volume alone: nothing is at its boundary.
+    let bare = inside.is_some() && output.is_some_and(|output| !flow.is_linked(output, "Surface"));
     let mut material = match parts[..] {
         [Part { weight, at }]
             if at.node.r#type == "ShaderNodeBsdfPrincipled" && flow.graph.known(weight) == Some([1.0; 4]) =>
@@ -47,6 +49,10 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
             mixed(flow, sum, base)
         }
     };
+    material.volume = inside.or(material.volume);
+    if bare {
+        material.transparency = ColorInput::constant([1.0; 3]);
+    }
     material.aovs = aov::outputs(flow);
     material.graph = std::mem::take(&mut flow.graph);
     material
@@ -213,10 +219,9 @@ pub(super) fn film<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<Iridescenc
     if flow.graph.known(thickness).is_some_and(|thickness| thickness[0] <= 0.0) {
         return None;
     }
-    let ior = flow.input_or(at, "Thin Film IOR", 1.33);
     Some(IridescenceDesc {
         weight: ScalarInput::constant(1.0),
-        ior: fixed(flow, ior, "the IOR of the thin film", 1.33),
+        ior: optional(flow, at, "Thin Film IOR", 1.33),
         thickness_min: 0.0,
         thickness_max: 1.0,
         thickness: scalar(flow, thickness),
@@ -287,21 +292,13 @@ pub(super) fn scalar(flow: &Flow<'_, '_>, value: ValueId) -> ScalarInput {
     }
 }
 
-/// A number that has to be the same everywhere.
-pub(super) fn fixed(flow: &mut Flow<'_, '_>, value: ValueId, name: &str, otherwise: f64) -> f64 {
-    let value = flow.graph.known(value);
-    if value.is_none() {
-        flow.warn(format!("{name} varies over the surface, which is not supported; {otherwise} is taken"));
-    }
-    value.map_or(otherwise, |value| value[0])
-}
-
 /// The inside of a transmissive surface: light is bent and nothing is absorbed.
 pub(super) fn solid() -> VolumeDesc {
     VolumeDesc {
         thickness: ScalarInput::constant(1.0),
         attenuation_distance: f64::INFINITY,
         attenuation_color: [1.0; 3],
+        adds: true,
     }
 }
 

@@ -94,16 +94,21 @@ impl TreeData {
 }
 
 impl TreeData {
-    /// True where the tree or a group in it asks for tangents of a UV map.
-    pub fn needs_tangents(&self) -> bool {
-        self.nodes.iter().any(|node| {
+    /// Names of all UV maps whose tangents the tree or a group in it asks for; "" for the one to render with.
+    pub fn tangent_map_names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for node in &self.nodes {
             let asks = match node.r#type.as_str() {
                 "ShaderNodeNormalMap" => node.text("space") == "TANGENT",
                 "ShaderNodeTangent" => node.text("direction_type") == "UV_MAP",
                 _ => false,
             };
-            asks || node.tree.as_ref().is_some_and(|tree| tree.needs_tangents())
-        })
+            if asks {
+                names.push(node.text("uv_map").to_owned());
+            }
+            names.extend(node.tree.iter().flat_map(|tree| tree.tangent_map_names()));
+        }
+        names
     }
 }
 

@@ -45,13 +45,7 @@ pub fn normal_map<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
             flow.graph.normal_map_of(space, color, strength)
         }
         _ => {
-            if flow.uv_sets.set(at.node.text("uv_map")).is_some_and(|set| set != 0) {
-                flow.warn(format!(
-                    "the Normal Map node \"{}\" uses the tangents of the UV map to render with",
-                    at.node.name
-                ));
-            }
-            let tangent = flow.graph.leaf(Leaf::Tangent);
+            let tangent = super::input::tangent_of_map(flow, at.node.text("uv_map"));
             flow.graph.normal_map(color, strength, tangent)
         }
     }

@@ -13,6 +13,9 @@ pub fn world(flow: &mut Flow<'_, '_>) -> Vec<WorldPart> {
     flow.is_world = true;
     let Some(output) = flow.output_node("ShaderNodeOutputWorld") else { return Vec::new() };
     let Some(surface) = output.node.input("Surface") else { return Vec::new() };
+    if flow.is_linked(output, "Volume") {
+        flow.warn("the world's volume is not supported; it is left out");
+    }
     let mut sum = flow.graph.number(0.0);
     for part in closure::parts(flow, output, surface) {
         if !matches!(part.at.node.r#type.as_str(), "ShaderNodeBackground" | "ShaderNodeEmission") {

@@ -2,8 +2,10 @@
 //! its Principled node.
 
 use super::evaluate::Evaluator;
-use super::expr::Id;
-use super::surface::Surface;
+use super::expr::{Exprs, Id};
+use super::models::pass_thin_wall;
+use super::surface::{Beneath, Surface};
+use crate::desc::SubsurfaceMethod;
 use crate::desc::graph::{Function, Math};
 
 /// BSDF trees are followed so deep.
@@ -18,6 +20,12 @@ pub(super) fn surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     }
     s.opacity = e.scalar(node, "opacity", 1.0);
     s.thin_walled = e.uniform(node, "thin_walled", 0.0) != 0.0;
+    if s.thin_walled
+        && let Some(Beneath { weight, color, .. }) = s.beneath.take()
+    {
+        let base = s.base_color;
+        pass_thin_wall(e, &mut s, [base, color, weight], 1.0);
+    }
     s
 }
 
@@ -143,6 +151,12 @@ fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surfa
             if let Some((_, color)) = &mut s.translucent {
                 *color = e.exprs.multiply(*color, factor);
             }
+            if let Some(beneath) = &mut s.beneath {
+                // A grey factor takes its share of the walks; what a color does to each of them is not known.
+                let grey = e.exprs.known(factor).is_some_and(|[r, g, b, _]| r == g && g == b);
+                let scaled = if grey { &mut beneath.weight } else { &mut beneath.color };
+                *scaled = e.exprs.multiply(*scaled, factor);
+            }
             let number = e.exprs.extract(factor, 0);
             s.specular = e.exprs.multiply(s.specular, number);
             s
@@ -154,10 +168,8 @@ fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surfa
                 None => base?,
             }
         }
-        "oren_nayar_diffuse_bsdf" | "burley_diffuse_bsdf" | "subsurface_bsdf" | "translucent_bsdf" => {
-            if category == "subsurface_bsdf" {
-                e.warn(node, format!("{category} is rendered as diffuse reflection of the same color"));
-            }
+        "subsurface_bsdf" => beneath(e, node),
+        "oren_nayar_diffuse_bsdf" | "burley_diffuse_bsdf" | "translucent_bsdf" => {
             let default = if category == "translucent_bsdf" { 1.0 } else { 0.18 };
             let mut s = black(e);
             s.base_color = e.input(node, "color", [default; 4]);
@@ -185,6 +197,24 @@ fn compute(e: &mut Evaluator<'_, '_>, node: usize, depth: usize) -> Option<Surfa
     })
 }
 
+/// A random walk inside of the object, in place of all diffuse light.
+fn beneath(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
+    let mut s = black(e);
+    let radius = e.input(node, "radius", [1.0; 4]);
+    let reading = &e.materials.reading;
+    let (meters, blender) = (reading.meters, reading.blender);
+    let radius = e.exprs.scale(radius, meters);
+    s.beneath = Some(Beneath {
+        weight: e.scalar(node, "weight", 1.0),
+        color: e.input(node, "color", [0.18; 4]),
+        radius,
+        anisotropy: e.scalar(node, "anisotropy", 0.0),
+        method: if blender { SubsurfaceMethod::RandomWalk } else { SubsurfaceMethod::FreePath },
+    });
+    s.normal = e.optional(node, "normal");
+    s
+}
+
 /// `top` over `base`: a dielectric's reflection or sheen.
 fn layered(e: &mut Evaluator<'_, '_>, top: usize, base: Option<Surface>, depth: usize) -> Option<Surface> {
     let Some(mut base) = base else { return scatters(e, top, depth + 1) };
@@ -201,8 +231,8 @@ fn layered(e: &mut Evaluator<'_, '_>, top: usize, base: Option<Surface>, depth: 
                 return Some(base);
             }
             let normal = base.normal.or(over.normal);
-            let Surface { base_color, transmission, sheen, translucent, diffuse_roughness, .. } = base;
-            Some(Surface { base_color, transmission, sheen, translucent, diffuse_roughness, normal, ..over })
+            let Surface { base_color, transmission, sheen, translucent, beneath, diffuse_roughness, .. } = base;
+            Some(Surface { base_color, transmission, sheen, translucent, beneath, diffuse_roughness, normal, ..over })
         }
         "sheen_bsdf" => {
             base.sheen = Some(sheen(e, top));
@@ -327,10 +357,11 @@ fn mixed(e: &mut Evaluator<'_, '_>, node: usize, bg: Surface, fg: Surface, amoun
             Some((x.mix(color(a), color(b), amount), roughness))
         }
     };
-    let (base_color, translucent) = diffuse(x, &bg, &fg, amount);
+    let diffuse = diffuse(x, &bg, &fg, amount);
     Surface {
-        base_color,
-        translucent,
+        base_color: diffuse.reflected,
+        translucent: diffuse.passed,
+        beneath: diffuse.beneath,
         diffuse_roughness: x.mix(bg.diffuse_roughness, fg.diffuse_roughness, amount),
         metallic: x.mix(bg.metallic, fg.metallic, amount),
         roughness: match (reflects(x, &bg), reflects(x, &fg)) {
@@ -350,24 +381,53 @@ fn mixed(e: &mut Evaluator<'_, '_>, node: usize, bg: Surface, fg: Surface, amoun
     }
 }
 
-/// Base color and passage of the diffuse parts of two surfaces: on each side what they put there.
-fn diffuse(x: &mut super::expr::Exprs, bg: &Surface, fg: &Surface, amount: Id) -> (Id, Option<(Id, Id)>) {
-    if bg.translucent.is_none() && fg.translucent.is_none() {
-        return (x.mix(bg.base_color, fg.base_color, amount), None);
+/// What is not a matter of microfacets.
+struct Diffuse {
+    reflected: Id,
+    /// Share and color.
+    passed: Option<(Id, Id)>,
+    beneath: Option<Beneath>,
+}
+
+/// The diffuse parts of two surfaces together: on each side, and beneath, what they put there.
+fn diffuse(x: &mut Exprs, bg: &Surface, fg: &Surface, amount: Id) -> Diffuse {
+    let both = [bg, fg];
+    if both.iter().all(|s| s.translucent.is_none() && s.beneath.is_none()) {
+        return Diffuse { reflected: x.mix(bg.base_color, fg.base_color, amount), passed: None, beneath: None };
     }
     let (zero, one) = (x.number(0.0), x.number(1.0));
-    let [(below, a, a_color), (above, b, b_color)] = [bg, fg].map(|s| {
-        let (weight, color) = s.translucent.unwrap_or((zero, zero));
-        let kept = x.subtract(one, weight);
-        (x.multiply(s.base_color, kept), weight, x.multiply(color, weight))
+    // Of all diffuse light: what passes, what goes beneath of the rest, what is left.
+    let passes = both.map(|s| s.translucent.unwrap_or((zero, zero)));
+    let kept = passes.map(|(share, _)| x.subtract(one, share));
+    let walks = [0, 1].map(|i| both[i].beneath.map_or(zero, |beneath| x.multiply(kept[i], beneath.weight)));
+    let stays = [0, 1].map(|i| x.subtract(kept[i], walks[i]));
+    let mut mean = |shares: [Id; 2], values: [Id; 2]| {
+        let [below, above] = [0, 1].map(|i| x.multiply(shares[i], values[i]));
+        let (sum, share) = (x.mix(below, above, amount), x.mix(shares[0], shares[1], amount));
+        (x.math(Math::Divide, &[sum, share]), share)
+    };
+    let (reflected, _) = mean(stays, both.map(|s| s.base_color));
+    let passed = both.iter().any(|s| s.translucent.is_some()).then(|| {
+        let (color, share) = mean(passes.map(|(share, _)| share), passes.map(|(_, color)| color));
+        (share, color)
     });
-    let (reflected, passes) = (x.mix(below, above, amount), x.mix(a, b, amount));
-    let (color, stays) = (x.mix(a_color, b_color, amount), x.subtract(one, passes));
-    let (base, color) = (x.math(Math::Divide, &[reflected, stays]), x.math(Math::Divide, &[color, passes]));
-    (base, Some((passes, color)))
+    let beneath = bg.beneath.or(fg.beneath).map(|some| {
+        let of = |i: usize, part: fn(&Beneath) -> Id| both[i].beneath.as_ref().map_or(zero, part);
+        let mut of_both = |part: fn(&Beneath) -> Id| mean(walks, [of(0, part), of(1, part)]);
+        let (color, share) = of_both(|beneath| beneath.color);
+        let (radius, _) = of_both(|beneath| beneath.radius);
+        let (anisotropy, _) = of_both(|beneath| beneath.anisotropy);
+        Beneath { weight: share, color, radius, anisotropy, ..some }
+    });
+    let beneath = beneath.map(|beneath| {
+        let passed = passed.map_or(zero, |(share, _)| share);
+        let rest = x.subtract(one, passed);
+        Beneath { weight: x.math(Math::Divide, &[beneath.weight, rest]), ..beneath }
+    });
+    Diffuse { reflected, passed, beneath }
 }
 
 /// Whether a surface has anything that its roughness shows in.
-fn reflects(x: &super::expr::Exprs, s: &Surface) -> bool {
+fn reflects(x: &Exprs, s: &Surface) -> bool {
     !x.is(s.specular, 0.0) || !x.is(s.metallic, 0.0) || !x.is(s.transmission, 0.0)
 }

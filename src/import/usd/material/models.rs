@@ -322,7 +322,12 @@ fn scatter_beneath(
 
 /// The diffuse part of a thin wall: of what light that is scattered `beneath` comes to, the share `forward` leaves on
 /// the other side.
-fn pass_thin_wall(e: &mut Evaluator<'_, '_>, s: &mut Surface, [base, beneath, weight]: [Id; 3], forward: f64) {
+pub(super) fn pass_thin_wall(
+    e: &mut Evaluator<'_, '_>,
+    s: &mut Surface,
+    [base, beneath, weight]: [Id; 3],
+    forward: f64,
+) {
     if e.exprs.is(weight, 0.0) {
         s.base_color = base;
         return;

@@ -155,7 +155,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         metal_edge: f.color(surface.metal_edge),
         diffuse_roughness: f.scalar(surface.diffuse_roughness),
         roughness: f.scalar(surface.roughness),
-        ior: f.number("index of refraction", surface.ior),
+        ior: f.scalar(surface.ior),
         specular: f.scalar(surface.specular),
         specular_color: f.color(surface.specular_color),
         transmission: f.scalar(surface.transmission),
@@ -182,19 +182,20 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
             thickness: ScalarInput::constant(1.0),
             attenuation_distance: distance,
             attenuation_color: f.rgb("transmission color", color),
+            adds: false,
         });
     }
     material.coat = surface.coat.filter(|coat| !f.e.exprs.is(coat.weight, 0.0)).map(|coat| CoatDesc {
         weight: f.scalar(coat.weight),
         roughness: f.scalar(coat.roughness),
-        ior: f.number("coat index of refraction", coat.ior),
+        ior: f.scalar(coat.ior),
         tint: f.color(coat.tint),
         normal: coat.normal.and_then(|id| f.normal("coat normal", id)),
     });
     let translucent = surface.translucent.filter(|(weight, _)| !f.e.exprs.is(*weight, 0.0));
     material.translucent =
         translucent.map(|(weight, color)| TranslucentDesc { weight: f.scalar(weight), color: f.color(color) });
-    let ior = ScalarInput::constant(material.ior);
+    let ior = material.ior;
     material.subsurface = surface.beneath.map(|beneath| SubsurfaceDesc {
         weight: f.scalar(beneath.weight),
         color: f.color(beneath.color),
@@ -213,7 +214,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
             let thickness = f.scalar(film.thickness);
             IridescenceDesc {
                 weight: f.scalar(film.weight),
-                ior: f.number("thin film index of refraction", film.ior),
+                ior: f.scalar(film.ior),
                 thickness_min: 0.0,
                 thickness_max: 1.0,
                 thickness,

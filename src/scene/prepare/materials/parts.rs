@@ -31,6 +31,9 @@ impl Builder<'_> {
     /// The parts of what scatters; those of no weight are left out.
     pub(super) fn parts(&mut self, inputs: &mut Inputs<'_>) -> Vec<Part> {
         let desc = inputs.desc;
+        if desc.parts.is_empty() && reflects_nothing(desc) {
+            return Vec::new();
+        }
         if desc.parts.is_empty() {
             let layers = self.layers(inputs, desc);
             return vec![part(number(1.0), layers)];
@@ -100,7 +103,10 @@ impl Builder<'_> {
 
     fn layers(&mut self, inputs: &mut Inputs<'_>, desc: &MaterialDesc) -> Bent {
         let translucent = desc.translucent.as_ref();
-        let ior = if desc.ior.is_finite() && desc.ior >= 0.0 { desc.ior as f32 } else { 1.5 };
+        let ior = match desc.ior.factor {
+            factor if factor.is_finite() && factor >= 0.0 => self.scalar(inputs, &desc.ior),
+            _ => number(1.5),
+        };
         let beneath = desc.subsurface.as_ref().filter(|beneath| beneath.weight.factor > 0.0);
         let coat = desc.coat.as_ref().filter(|coat| coat.weight.factor > 0.0);
         let sheen = desc.sheen.as_ref().filter(|sheen| sheen.color.factor.iter().any(|&c| c > 0.0));
@@ -112,7 +118,7 @@ impl Builder<'_> {
             roughness: self.scalar(inputs, &desc.roughness),
             stretched: None,
             multiscatter: desc.multiscatter,
-            ior: number(ior),
+            ior,
             specular: self.scalar(inputs, &desc.specular),
             specular_color: self.color(inputs, &desc.specular_color),
             specular_level: self.scalar(inputs, &desc.specular_level),
@@ -124,7 +130,7 @@ impl Builder<'_> {
             coat: coat.map(|coat| Coat {
                 weight: self.scalar(inputs, &coat.weight),
                 roughness: self.scalar(inputs, &coat.roughness),
-                ior: number(coat.ior as f32),
+                ior: self.scalar(inputs, &coat.ior),
                 tint: self.color(inputs, &coat.tint),
                 frame: None,
             }),
@@ -185,7 +191,7 @@ impl Builder<'_> {
                 self.scalar(inputs, &desc::ScalarInput::graph(value))
             }
         };
-        Some(ThinFilm { thickness, ior: number(desc.ior as f32), weight })
+        Some(ThinFilm { thickness, ior: self.scalar(inputs, &desc.ior), weight })
     }
 
     /// An input as a value of the graph.
@@ -229,6 +235,17 @@ impl Inputs<'_> {
         self.bends.push(value);
         self.bends.len() as u8 - 1
     }
+}
+
+/// True for layers that are black everywhere.
+fn reflects_nothing(desc: &MaterialDesc) -> bool {
+    let MaterialDesc { coat, sheen, translucent, subsurface, .. } = desc;
+    desc.base_color.factor == [0.0; 3]
+        && [desc.specular, desc.metallic].iter().all(|input| input.factor == 0.0)
+        && coat.is_none()
+        && sheen.is_none()
+        && translucent.is_none()
+        && subsurface.is_none()
 }
 
 fn white() -> ColorInput {

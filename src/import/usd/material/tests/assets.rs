@@ -48,7 +48,7 @@ fn cornell_boxes_are_the_same_in_three_languages() {
         for (material, color) in found.iter().zip(colors) {
             let material = material.as_ref().unwrap();
             same(&material.base_color.factor, &color);
-            same(&[material.roughness.factor, material.ior], &[1.0, 1.5]);
+            same(&[material.roughness.factor, material.ior.factor], &[1.0, 1.5]);
             assert_eq!(material.alpha_mode, AlphaMode::Opaque);
         }
         let light = found[3].as_ref().unwrap();
@@ -89,10 +89,10 @@ fn the_shader_ball_has_documents_and_networks() {
     same(&gold.base_color.factor, &[0.910751, 0.793992, 0.405919]);
     same(&[gold.roughness.factor, gold.metallic.factor], &[0.01, 1.0]);
     same(&glass.base_color.factor, &[0.942, 1.0, 0.9884]);
-    same(&[glass.ior, glass.roughness.factor, glass.transmission.factor], &[1.54107, 0.01625, 1.0]);
+    same(&[glass.ior.factor, glass.roughness.factor, glass.transmission.factor], &[1.54107, 0.01625, 1.0]);
     assert!(glass.volume.is_some());
     same(&gum.subsurface.unwrap().color.factor, &[1.0, 0.22, 0.493]);
-    same(&[gum.specular.factor, gum.ior], &[0.383, 1.584]);
+    same(&[gum.specular.factor, gum.ior.factor], &[0.383, 1.584]);
     assert!(!warnings.contains("subsurface"), "{warnings}");
     // open_pbr_surface1: nothing drives its base color, the emission image is not named.
     same(&neutral.base_color.factor, &[0.8; 3]);
@@ -116,7 +116,7 @@ fn textures_of_a_package_are_read() {
     let Some((found, scene, warnings)) = read(file, &paths.each_ref().map(String::as_str)) else { return };
     let first = found[0].as_ref().unwrap();
     // float inputs:metallic = 0.6, ior = 1.45; roughness from r of roughness.tga, which is marked sRGB.
-    same(&[first.metallic.factor, first.ior], &[0.6, 1.45]);
+    same(&[first.metallic.factor, first.ior.factor], &[0.6, 1.45]);
     let (texture, channel) = first.roughness.texture.unwrap();
     let image = &scene.images[scene.textures[texture.texture as usize].image as usize];
     assert_eq!((&*image.name, image.color_space, channel), ("roughness.tga", ColorSpace::Srgb, Channel::R));

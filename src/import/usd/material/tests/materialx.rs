@@ -25,10 +25,10 @@ fn standard_surface_folds_its_weights() {
     );
     let m = read.material();
     same(&m.base_color.factor, &[0.1, 0.2, 0.3]);
-    same(&[m.metallic.factor, m.specular.factor, m.ior, m.roughness.factor], &[0.25, 0.75, 1.4, 0.2]);
+    same(&[m.metallic.factor, m.specular.factor, m.ior.factor, m.roughness.factor], &[0.25, 0.75, 1.4, 0.2]);
     same(&[m.coat.unwrap().weight.factor, m.coat.unwrap().roughness.factor], &[0.5, 0.1]);
     same(&m.sheen.unwrap().color.factor, &[0.5, 0.25, 0.0]);
-    same(&[m.iridescence.unwrap().thickness.factor, m.iridescence.unwrap().ior], &[400.0, 1.5]);
+    same(&[m.iridescence.unwrap().thickness.factor, m.iridescence.unwrap().ior.factor], &[400.0, 1.5]);
     same(&m.emission.factor, &[3.0, 6.0, 9.0]);
     same(&[m.alpha.factor], &[0.5]);
     assert_eq!(m.alpha_mode, AlphaMode::Blend);
@@ -100,7 +100,7 @@ fn open_pbr_of_blender() {
     );
     let m = read.material();
     same(&[m.emission.factor[0], m.sheen.unwrap().color.factor[0], m.alpha.factor], &[3.0, 0.4, 0.5]);
-    same(&[m.iridescence.unwrap().thickness.factor, m.coat.unwrap().ior], &[300.0, 1.5]);
+    same(&[m.iridescence.unwrap().thickness.factor, m.coat.unwrap().ior.factor], &[300.0, 1.5]);
     let anisotropy = m.anisotropy.unwrap();
     same(&[anisotropy.strength.factor, anisotropy.rotation.factor], &[0.21 / 0.9, std::f64::consts::FRAC_PI_2]);
     let beneath = m.subsurface.unwrap();
@@ -191,6 +191,65 @@ fn closures_mix_and_emit() {
     // Gold's reflectance in red from its index: ((n − 1)² + k²) / ((n + 1)² + k²).
     let gold = ((0.183_f64 - 1.0).powi(2) + 3.424_f64.powi(2)) / (1.183_f64.powi(2) + 3.424_f64.powi(2));
     same(&[m.base_color.factor[0]], &[0.75 * 0.8 + 0.25 * gold]);
+}
+
+#[test]
+fn subsurface_in_a_tree_is_a_random_walk() {
+    let tree = |top: &str, nodes: &str| {
+        mtlx("ND_surface", &format!("token inputs:bsdf.connect = </m/{top}.outputs:out>"), nodes)
+    };
+    let wax = "def Shader \"wax\" { uniform token info:id = \"ND_subsurface_bsdf\"
+            float inputs:weight = 0.5
+            color3f inputs:color = (0.8, 0.6, 0.4)
+            color3f inputs:radius = (1, 0.5, 0.25)
+            float inputs:anisotropy = 0.3
+            token outputs:out }";
+    let alone = tree("wax", wax);
+    let m = alone.material();
+    let beneath = m.subsurface.unwrap();
+    same(&beneath.color.factor, &[0.8, 0.6, 0.4]);
+    // Of the stage's units, centimetres.
+    same(&beneath.radius.factor, &[0.01, 0.005, 0.0025]);
+    same(&[beneath.weight.factor, beneath.anisotropy.factor, m.specular.factor], &[0.5, 0.3, 0.0]);
+    same(&m.base_color.factor, &[0.0; 3]);
+    assert_eq!(beneath.method, crate::desc::SubsurfaceMethod::FreePath);
+    assert_eq!(alone.warnings, "");
+
+    // A quarter of paint: of all light 0.375 walks, 0.25 is diffuse, the rest of the wax is black.
+    let mixed = tree(
+        "mix",
+        &format!(
+            "{wax} def Shader \"mix\" {{ uniform token info:id = \"ND_mix_bsdf\"
+                token inputs:bg.connect = </m/wax.outputs:out>
+                token inputs:fg.connect = </m/paint.outputs:out>
+                float inputs:mix = 0.25
+                token outputs:out }}
+             def Shader \"paint\" {{ uniform token info:id = \"ND_oren_nayar_diffuse_bsdf\"
+                color3f inputs:color = (0.2, 0.4, 0.5)
+                token outputs:out }}"
+        ),
+    );
+    let m = mixed.material();
+    let beneath = m.subsurface.unwrap();
+    same(&[beneath.weight.factor], &[0.375]);
+    same(&beneath.color.factor, &[0.8, 0.6, 0.4]);
+    same(&beneath.radius.factor, &[0.01, 0.005, 0.0025]);
+    same(&m.base_color.factor.map(|c| c * 0.625), &[0.05, 0.1, 0.125]);
+
+    let lacquered = tree(
+        "layer",
+        &format!(
+            "{wax} def Shader \"layer\" {{ uniform token info:id = \"ND_layer_bsdf\"
+                token inputs:top.connect = </m/shine.outputs:out>
+                token inputs:base.connect = </m/wax.outputs:out>
+                token outputs:out }}
+             def Shader \"shine\" {{ uniform token info:id = \"ND_dielectric_bsdf\"
+                float inputs:ior = 1.4
+                token outputs:out }}"
+        ),
+    );
+    let m = lacquered.material();
+    same(&[m.subsurface.unwrap().weight.factor, m.specular.factor, m.ior.factor], &[0.5, 1.0, 1.4]);
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn preview_surface_has_its_defaults() {
     let m = read.material();
     assert_eq!(&*m.name, "m");
     same(&m.base_color.factor, &[0.18; 3]);
-    same(&[m.metallic.factor, m.roughness.factor, m.ior, m.specular.factor], &[0.0, 0.5, 1.5, 1.0]);
+    same(&[m.metallic.factor, m.roughness.factor, m.ior.factor, m.specular.factor], &[0.0, 0.5, 1.5, 1.0]);
     assert_eq!(m.alpha_mode, AlphaMode::Opaque);
     assert!(m.coat.is_none() && m.normal.is_none() && m.occlusion.is_none() && m.volume.is_none());
     assert_eq!(read.warnings, "");
@@ -50,10 +50,10 @@ fn preview_surface_reads_every_input() {
     let m = read.material();
     same(&m.base_color.factor, &[0.1, 0.2, 0.3]);
     same(&m.emission.factor, &[4.0, 5.0, 6.0]);
-    same(&[m.metallic.factor, m.roughness.factor, m.ior, m.alpha.factor], &[0.7, 0.25, 1.75, 0.5]);
+    same(&[m.metallic.factor, m.roughness.factor, m.ior.factor, m.alpha.factor], &[0.7, 0.25, 1.75, 0.5]);
     assert_eq!(m.alpha_mode, AlphaMode::Blend);
     let coat = m.coat.unwrap();
-    same(&[coat.weight.factor, coat.roughness.factor, coat.ior], &[0.5, 0.125, 1.75]);
+    same(&[coat.weight.factor, coat.roughness.factor, coat.ior.factor], &[0.5, 0.125, 1.75]);
     assert!(read.warnings.contains("displacement") && read.warnings.contains("/m/s"), "{}", read.warnings);
 }
 
@@ -69,7 +69,7 @@ fn the_specular_workflow_has_f0_for_its_color() {
     let m = read.material();
     // F0 at index 1.5 is 0.04 times the tint.
     same(&m.specular_color.factor, &[12.5, 0.5, 1.0]);
-    same(&[m.metallic.factor, m.ior], &[0.0, 1.5]);
+    same(&[m.metallic.factor, m.ior.factor], &[0.0, 1.5]);
 }
 
 #[test]
