@@ -37,7 +37,7 @@ fn distance(settings: &Settings) -> f32 {
 /// The integrator that renders nothing else: Combined holds the ao pass.
 pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings: &Settings) -> PixelSample {
     let mut sample = PixelSample::of(&scene.passes);
-    let Some((it, vertex)) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
+    let Some((it, vertex)) = super::path::first_surface(scene, sampler, ray, cone, settings, &mut sample) else {
         return sample;
     };
     let frame = scene.shading_frame(&it);

@@ -5,6 +5,7 @@
 
 use super::direct::Shading;
 use super::first_hit::{describe, describe_shape};
+use super::limits::Limits;
 use super::media::Media;
 use super::scattering::{Scattering, seen};
 use super::shadow::{emitters_along, mesh_weight};
@@ -16,7 +17,7 @@ use crate::film::PixelSample;
 use crate::light::{Emitter, Rules};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Blur, Coverage, Interaction, MAX_TRANSPARENT, PathState, RayCone, RayKind, Scene, mask};
+use crate::scene::{Blur, Coverage, Interaction, PathState, RayCone, RayKind, Scene, mask};
 use crate::settings::Settings;
 
 /// Scatterings before roulette begins.
@@ -26,7 +27,8 @@ const ROULETTE_AFTER: u32 = 3;
 const SCATTERED_SPREAD: f32 = 0.25;
 
 /// Where a path stands.
-struct Path {
+struct Path<'a> {
+    limits: &'a Limits,
     ray: Ray,
     cone: RayCone,
     mask: u64,
@@ -41,10 +43,12 @@ struct Path {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
-    /// True where one of them was diffuse.
-    diffuse: bool,
+    /// How many of them were of each class.
+    by_lobe: [u32; 3],
     /// Solids that the path is inside of.
     media: Media,
+    /// Surfaces that it has passed unscattered.
+    passed: u32,
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
     /// Density of the least likely direction taken so far, deltas left out.
@@ -58,9 +62,10 @@ struct Path {
     travelled: f32,
 }
 
-impl Path {
-    fn from_camera(ray: Ray, cone: RayCone) -> Self {
+impl<'a> Path<'a> {
+    fn from_camera(ray: Ray, cone: RayCone, limits: &'a Limits) -> Self {
         Self {
+            limits,
             ray,
             cone,
             mask: mask::CAMERA,
@@ -70,8 +75,9 @@ impl Path {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
-            diffuse: false,
+            by_lobe: [0; 3],
             media: Media::default(),
+            passed: 0,
             vertex: 0,
             min_pdf: f32::INFINITY,
             last: None,
@@ -81,6 +87,16 @@ impl Path {
         }
     }
 
+    /// True where the path looks for emitters alone.
+    fn is_exhausted(&self) -> bool {
+        self.limits.exhausted(self.scatterings, self.by_lobe)
+    }
+
+    /// What the camera sees of radiance `le` that nothing has scattered.
+    fn unscattered(&self, le: Rgb) -> Rgb {
+        self.limits.clamp(self.beta * le, 0)
+    }
+
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
     /// weight. Lights with shadow rules of their own are counted where the ray begins.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
@@ -88,6 +104,7 @@ impl Path {
             return;
         }
         let l = seen(last.shares, rules) * (self.beta * le);
+        let l = l * self.limits.factor(l.sum(), self.scatterings);
         if self.scatterings == 1 {
             add_direct(sample, rules, l);
         } else {
@@ -105,9 +122,9 @@ pub fn trace(
     settings: &Settings,
     max_bounces: u32,
 ) -> PixelSample {
-    let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
+    let limits = Limits::of(settings, if scene.effects.indirect { max_bounces } else { 0 });
     let mut sample = PixelSample::of(&scene.passes);
-    let mut path = Path::from_camera(ray, cone);
+    let mut path = Path::from_camera(ray, cone, &limits);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let mut in_front = None;
     loop {
@@ -128,14 +145,14 @@ pub fn trace(
             add_background(scene, &path, &mut sample);
             break;
         };
-        if path.scatterings > max_bounces {
+        if path.is_exhausted() {
             break;
         }
         if path.scatterings == 0 && scene.is_holdout(&it) {
             break;
         }
         let frame = scene.shading_frame(&it);
-        let bsdf = scene.bsdf(&it, &frame, path.share, Blur::of_path(settings, path.min_pdf));
+        let bsdf = scene.bsdf(&it, &frame, path.share, Blur::of_path(settings, path.min_pdf, path.mask == mask::DIFFUSE));
         let shading = Shading { it: &it, frame: &frame, bsdf: &bsdf, vertex: path.vertex };
         if path.scatterings == 0 {
             // Of a catcher the camera sees no light, but what it is.
@@ -167,8 +184,7 @@ pub fn trace(
         if !scatter(scene, sampler, &mut path, &shading, light_samples, &mut sample) {
             break;
         }
-        let only_emitters = path.scatterings > max_bounces;
-        if (only_emitters && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
+        if (path.is_exhausted() && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
             break;
         }
     }
@@ -182,7 +198,7 @@ pub fn trace(
 fn describe_first(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     settings: &Settings,
     sample: &mut PixelSample,
@@ -208,14 +224,14 @@ enum Met<'a> {
 }
 
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
-/// are passed by the odds of their opacity. `visit` is called with everything on the way.
+/// are passed by the odds of their opacity, up to so many on the whole path: the next one is black. `visit` is called with everything on the way.
 fn next_surface(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
-    mut visit: impl FnMut(&Path, Met<'_>),
+    path: &mut Path<'_>,
+    mut visit: impl FnMut(&Path<'_>, Met<'_>),
 ) -> Option<Interaction> {
-    for _ in 0..MAX_TRANSPARENT {
+    loop {
         let Some(hit) = scene.closest_hit(&path.ray, path.mask) else {
             visit(path, Met::Stretch([path.travelled, f32::INFINITY]));
             return None;
@@ -234,6 +250,10 @@ fn next_surface(
         let coverage = if scene.effects.cutouts { scene.coverage(&it) } else { Coverage::OPAQUE };
         visit(path, Met::Surface(&it, coverage));
         let Coverage { opacity, passes, p_stop } = coverage;
+        if path.passed > 0 && path.passed >= scene.max_transparent {
+            path.beta = Rgb::BLACK;
+            return Some(it);
+        }
         if p_stop == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < p_stop {
             path.alpha *= coverage.alpha() / p_stop;
             path.share = opacity / p_stop;
@@ -241,12 +261,10 @@ fn next_surface(
         }
         path.beta *= passes * (1.0 / (1.0 - p_stop));
         path.alpha *= (1.0 - coverage.alpha()) / (1.0 - p_stop);
+        path.passed += 1;
         path.state.transparent = path.state.transparent.saturating_add(1);
         path.ray = it.continued(&path.ray, hit.t);
     }
-    // Too many layers: stopped, as a shadow ray is.
-    path.beta = Rgb::BLACK;
-    None
 }
 
 /// What a stretch of `dist` metres inside `media` lets through.
@@ -261,9 +279,11 @@ pub fn first_surface(
     sampler: &Sampler,
     ray: Ray,
     cone: RayCone,
+    settings: &Settings,
     sample: &mut PixelSample,
 ) -> Option<(Interaction, u32)> {
-    let mut path = Path::from_camera(ray, cone);
+    let limits = Limits::of(settings, 0);
+    let mut path = Path::from_camera(ray, cone, &limits);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
         Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),
@@ -276,7 +296,7 @@ pub fn first_surface(
 }
 
 /// Lamps on a stretch of the way; they stop nothing.
-fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSample) {
+fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sample: &mut PixelSample) {
     let wi = path.ray.d;
     scene.lights.lamps_along(path.start, wi, segment, |i, light, hit| {
         let mut le = light.emitter.le(wi, Some(hit));
@@ -285,9 +305,10 @@ fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSa
         }
         match &path.last {
             None if light.rules.seen.camera => {
-                sample.emission += path.beta * le;
+                let l = path.unscattered(le);
+                sample.emission += l;
                 sample.denoising_albedo += le;
-                add_unscattered(sample, &light.rules, path.beta * le);
+                add_unscattered(sample, &light.rules, l);
             }
             None => {}
             Some(last) => {
@@ -299,16 +320,17 @@ fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSa
 }
 
 /// What lies behind everything.
-fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
+fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelSample) {
     if path.scatterings == 0 && scene.background_visible {
         sample.alpha = path.alpha;
     }
     for (i, light, le) in scene.background(path.ray.d) {
         match &path.last {
             None if light.rules.seen.camera => {
-                sample.environment += path.beta * le;
+                let l = path.unscattered(le);
+                sample.environment += l;
                 if !scene.film_transparent {
-                    add_unscattered(sample, &light.rules, path.beta * le);
+                    add_unscattered(sample, &light.rules, l);
                 }
             }
             None => {}
@@ -322,7 +344,7 @@ fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
 
 /// What the surface at `it` emits towards the path. Of one that is partly open it is the mean, whether
 /// the path stops there or not, as light sampling and the shadow passes have it.
-fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
+fn add_emission(scene: &Scene, path: &Path<'_>, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
     let le = scene.emission(it) * opacity;
     if le.is_black() || (path.last.is_none() && scene.is_holdout(it)) {
         return;
@@ -330,9 +352,10 @@ fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, samp
     let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
     match &path.last {
         None => {
-            sample.emission += path.beta * le;
+            let l = path.unscattered(le);
+            sample.emission += l;
             sample.denoising_albedo += le;
-            add_unscattered(sample, rules, path.beta * le);
+            add_unscattered(sample, rules, l);
         }
         Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
     }
@@ -342,7 +365,7 @@ fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, samp
 fn add_lights(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     light_samples: u32,
     sample: &mut PixelSample,
@@ -363,7 +386,7 @@ fn add_lights(
 fn add_light(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     samples: f32,
     sample: &mut PixelSample,
@@ -371,12 +394,13 @@ fn add_light(
     let Some(light) = shading.sample_light(scene, sampler, samples) else { return };
     let unoccluded = light.unoccluded * (path.beta * (1.0 / samples));
     let arrives = unoccluded * light.visibility;
+    let dimmed = |l: ByLobe| l * path.limits.factor(l.sum(), path.scatterings + 1);
     if path.scatterings > 0 {
-        return add_indirect(sample, light.rules, path.shares, arrives.sum());
+        return add_indirect(sample, light.rules, path.shares, dimmed(arrives).sum());
     }
-    add_direct(sample, light.rules, arrives);
+    add_direct(sample, light.rules, dimmed(arrives));
     if scene.effects.shadow {
-        sample.unshadowed += unoccluded.diffuse;
+        sample.unshadowed += dimmed(unoccluded).diffuse;
     }
 }
 
@@ -384,7 +408,7 @@ fn add_light(
 fn scatter(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
+    path: &mut Path<'_>,
     shading: &Shading<'_>,
     light_samples: u32,
     sample: &mut PixelSample,
@@ -419,7 +443,7 @@ fn scatter(
     let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
-    path.diffuse |= scattered.lobe == Lobe::Diffuse;
+    path.by_lobe[scattered.lobe as usize] += 1;
     if first {
         path.shares = last.shares;
     }
@@ -428,10 +452,12 @@ fn scatter(
         emitters_along(scene, &last, &path.state, &path.ray, path.cone, unshadowed, |found| {
             let weight = seen(scattered.weight, found.rules);
             if unshadowed {
-                sample.unshadowed += weight.diffuse * (beta * found.le);
+                let l = weight * (beta * found.le);
+                sample.unshadowed += l.diffuse * path.limits.factor(l.sum(), 1);
             }
             if !found.rules.stops_like_rays() {
                 let l = weight * (beta * found.le * found.visibility(scene, &path.ray));
+                let l = l * path.limits.factor(l.sum(), path.scatterings);
                 if first {
                     add_direct(sample, found.rules, l);
                 } else {
@@ -462,7 +488,7 @@ fn scatter(
 fn go_beneath(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
+    path: &mut Path<'_>,
     shading: &Shading<'_>,
     (scattered, beneath): (&BsdfSample, u8),
     light_samples: u32,
@@ -473,7 +499,7 @@ fn go_beneath(
     let entry = subsurface::Entry { it, n: frame.n, wi: frame.to_world(scattered.wi), vertex, cone: path.cone };
     let beta = path.beta * scattered.weight.sum();
     let came_out = match inside {
-        _ if shallow && path.diffuse => Some((*it, beta)),
+        _ if shallow && path.by_lobe[Lobe::Diffuse as usize] > 0 => Some((*it, beta)),
         Inside::Medium(medium) => entry.walk(scene, sampler, &medium, beta),
         Inside::Profile(profile) => entry.probe(scene, sampler, &profile, beta),
     };
@@ -499,7 +525,7 @@ fn kind_of(lobe: Lobe) -> RayKind {
 }
 
 /// Russian roulette by the throughput; false where the path ends.
-fn survives(sampler: &Sampler, path: &mut Path) -> bool {
+fn survives(sampler: &Sampler, path: &mut Path<'_>) -> bool {
     if path.scatterings <= ROULETTE_AFTER {
         return true;
     }

@@ -29,7 +29,7 @@ pub use material::{Coverage, Material};
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use terminator::Terminator;
-pub use trace::{MAX_TRANSPARENT, RayCone};
+pub use trace::RayCone;
 
 use std::sync::Arc;
 
@@ -68,6 +68,8 @@ pub struct Scene {
     pub follows_camera: bool,
     /// True where Combined lacks what lies behind everything.
     pub film_transparent: bool,
+    /// Surfaces that a path or a shadow ray may pass unscattered: see the setting of transparent bounces.
+    pub max_transparent: u32,
     /// Opacity from which on a surface is what the data passes show.
     pub pass_alpha_threshold: f32,
     /// Names and hashes for the index and Cryptomatte passes.

@@ -45,10 +45,11 @@ pub struct Anisotropy {
 
 impl Scene {
     /// What scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of all of it,
-    /// `blur` what its highlights are widened by.
+    /// `blur` what its highlights are widened by, or hidden.
     pub fn bsdf(&self, it: &Interaction, frame: &Frame, share: f32, blur: Blur) -> Bsdf {
         let material = self.material(it);
         let mut builder = self.builder(it, frame);
+        builder.keep(blur.kept());
         let widening = self.widening(it, blur, |it| self.shading_frame(it).n);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);

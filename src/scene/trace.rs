@@ -5,9 +5,6 @@ use crate::bvh::Hit;
 use crate::light::{Emitter, Light, Rules, Shadow, ShadowLook};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
 
-/// Surfaces that one ray may pass unscattered before it counts as stopped.
-pub const MAX_TRANSPARENT: u32 = 256;
-
 /// The footprint of a ray: a cone of width `width + spread · t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCone {
@@ -67,7 +64,7 @@ impl Scene {
     fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32) -> Rgb {
         let mut left = Rgb::WHITE;
         let (mut rest, mut t) = (*ray, 0.0);
-        for _ in 0..MAX_TRANSPARENT {
+        for _ in 0..=self.max_transparent {
             let Some(hit) = self.closest_hit(&rest, mask) else { return left };
             let mut it = self.interaction(&rest, &hit, RayCone { width: 0.0, spread: 0.0 });
             if self.effects.light_path {
