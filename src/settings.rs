@@ -286,7 +286,7 @@ settings! {
         "Glossy reflections among them; as many as --max-bounces unless set";
     transmission_bounces: Option<u32> = "", Kind::Int { min: 0, max: 1 << 20 }, "N",
         "Passages through surfaces among them; as many as --max-bounces unless set";
-    transparent_bounces: u32 = "256", Kind::Int { min: 0, max: 1 << 20 }, "N",
+    transparent_bounces: u32 = "256", Kind::Int { min: 0, max: 1 << 15 }, "N",
         "Cut-outs and blends that a path, or a shadow ray, passes unscattered at most; what a path meets after so many is black";
     clamp_direct: f64 = "0", Kind::Float { min: 0.0, max: f64::MAX }, "X",
         "Dim what one path adds by direct light to three times this, red, green and blue together; biased; 0 for never";

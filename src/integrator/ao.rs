@@ -23,7 +23,7 @@ pub fn openness(
             let sampler = if rays > 1 { sampler.part(k, rays) } else { *sampler };
             let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
             let w = frame.to_world(warp::sample_cosine_hemisphere(u));
-            scene.transmittance(&Ray { t_max, ..scene.shadow_ray(it, w, None) }, Shadow::Cast)
+            scene.transmittance(&Ray { t_max, ..scene.shadow_ray(it, w, None) }, Shadow::Cast, it.path.transparent)
         })
         .sum();
     open * (1.0 / rays as f32)

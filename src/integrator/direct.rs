@@ -106,7 +106,7 @@ impl Shading<'_> {
         if scene.is_caught(&ray) {
             return None;
         }
-        Some([irradiance * scene.arriving(&ray, rules), irradiance])
+        Some([irradiance * scene.arriving(&ray, rules, self.it.path.transparent), irradiance])
     }
 
     fn decision(&self, decision: Decision) -> Dimension {
@@ -122,7 +122,7 @@ fn sample<'s>(scene: &'s Scene, at: &Receiver, choice: Choice, u: [f32; 2]) -> O
 }
 
 fn visibility(scene: &Scene, it: &Interaction, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
-    scene.arriving(&scene.shadow_ray(it, wi, end), rules)
+    scene.arriving(&scene.shadow_ray(it, wi, end), rules, it.path.transparent)
 }
 
 /// True where the normal of a map and the one that it bends disagree on which side `wi` is.

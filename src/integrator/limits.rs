@@ -1,13 +1,14 @@
 //! What ends a path whatever it carries, and what one of its contributions may add at most.
 
 use crate::math::Rgb;
+use crate::scene::PathState;
 use crate::settings::Settings;
 
 /// Limits of a render's paths, as Cycles has them.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     scatterings: u32,
-    /// Of each class of lobes.
+    /// Of diffuse, glossy and transmitting lobes.
     by_lobe: [u32; 3],
     /// Largest sums of the three channels, of light that was scattered once or never and of other light.
     sums: [f32; 2],
@@ -25,10 +26,14 @@ impl Limits {
         }
     }
 
-    /// True after `scatterings`, so many of each class: what is met now is seen for what it emits, and nothing more.
+    /// True after `scatterings`, of which `state` knows the kinds: what is met now is seen for what it emits, and nothing more.
     #[inline]
-    pub fn exhausted(&self, scatterings: u32, by_lobe: [u32; 3]) -> bool {
-        scatterings > self.scatterings || by_lobe.iter().zip(self.by_lobe).any(|(&taken, limit)| taken > limit)
+    pub fn exhausted(&self, scatterings: u32, state: &PathState) -> bool {
+        let [diffuse, glossy, transmission] = self.by_lobe;
+        scatterings > self.scatterings
+            || u32::from(state.diffuse) > diffuse
+            || u32::from(state.glossy) > glossy
+            || u32::from(state.transmission) > transmission
     }
 
     /// `l`, which was scattered so many times, dimmed to what one contribution may add.
@@ -49,16 +54,15 @@ impl Limits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bsdf::Lobe::{self, Diffuse, Glossy, Transmission};
+    use crate::scene::RayKind::{self, Diffuse, Glossy, Transmission};
 
     #[test]
     fn each_kind_of_scattering_has_its_own_limit() {
         let settings = Settings { diffuse_bounces: Some(1), glossy_bounces: Some(0), ..Settings::default() };
         let limits = Limits::of(&settings, 2);
-        let after = |lobes: &[Lobe]| {
-            let mut by_lobe = [0; 3];
-            lobes.iter().for_each(|&lobe| by_lobe[lobe as usize] += 1);
-            limits.exhausted(lobes.len() as u32, by_lobe)
+        let after = |kinds: &[RayKind]| {
+            let state = kinds.iter().fold(PathState::CAMERA, |state, &kind| state.scattered(kind, false));
+            limits.exhausted(kinds.len() as u32, &state)
         };
         assert!(!after(&[]) && !after(&[Diffuse]) && after(&[Diffuse, Diffuse]));
         assert!(after(&[Glossy]) && after(&[Diffuse, Glossy]));

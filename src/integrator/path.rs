@@ -43,19 +43,15 @@ struct Path<'a> {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
-    /// How many of them were of each class.
-    by_lobe: [u32; 3],
     /// Solids that the path is inside of.
     media: Media,
-    /// Surfaces that it has passed unscattered.
-    passed: u32,
     /// Surfaces met so far, passed ones included: the index of random decisions.
     vertex: u32,
     /// Density of the least likely direction taken so far, deltas left out.
     min_pdf: f32,
     /// The last scattering; `None` for rays from the camera.
     last: Option<Scattering>,
-    /// What graphs may ask of it, where they do.
+    /// What limits and graphs ask of it.
     state: PathState,
     /// Where `ray` would have begun had it passed no surface since, and how far it has come.
     start: Vec3,
@@ -75,9 +71,7 @@ impl<'a> Path<'a> {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
-            by_lobe: [0; 3],
             media: Media::default(),
-            passed: 0,
             vertex: 0,
             min_pdf: f32::INFINITY,
             last: None,
@@ -89,7 +83,7 @@ impl<'a> Path<'a> {
 
     /// True where the path looks for emitters alone.
     fn is_exhausted(&self) -> bool {
-        self.limits.exhausted(self.scatterings, self.by_lobe)
+        self.limits.exhausted(self.scatterings, &self.state)
     }
 
     /// What the camera sees of radiance `le` that nothing has scattered.
@@ -243,6 +237,7 @@ fn next_surface(
         if scene.effects.light_path {
             it.path = PathState { length: path.travelled, ..path.state };
         }
+        it.path.transparent = path.state.transparent;
         if scene.effects.absorption {
             path.beta *= transmitted(&path.media, hit.t);
         }
@@ -250,7 +245,7 @@ fn next_surface(
         let coverage = if scene.effects.cutouts { scene.coverage(&it) } else { Coverage::OPAQUE };
         visit(path, Met::Surface(&it, coverage));
         let Coverage { opacity, passes, p_stop } = coverage;
-        if path.passed > 0 && path.passed >= scene.max_transparent {
+        if path.state.transparent > 0 && u32::from(path.state.transparent) >= scene.max_transparent {
             path.beta = Rgb::BLACK;
             return Some(it);
         }
@@ -261,7 +256,6 @@ fn next_surface(
         }
         path.beta *= passes * (1.0 / (1.0 - p_stop));
         path.alpha *= (1.0 - coverage.alpha()) / (1.0 - p_stop);
-        path.passed += 1;
         path.state.transparent = path.state.transparent.saturating_add(1);
         path.ray = it.continued(&path.ray, hit.t);
     }
@@ -429,9 +423,7 @@ fn scatter(
         path.min_pdf = path.min_pdf.min(scattered.pdf);
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
-    if scene.effects.light_path {
-        path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
-    }
+    path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
     let last = Scattering {
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
@@ -443,7 +435,6 @@ fn scatter(
     let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
-    path.by_lobe[scattered.lobe as usize] += 1;
     if first {
         path.shares = last.shares;
     }
@@ -456,7 +447,7 @@ fn scatter(
                 sample.unshadowed += l.diffuse * path.limits.factor(l.sum(), 1);
             }
             if !found.rules.stops_like_rays() {
-                let l = weight * (beta * found.le * found.visibility(scene, &path.ray));
+                let l = weight * (beta * found.le * found.visibility(scene, &path.ray, path.state.transparent));
                 let l = l * path.limits.factor(l.sum(), path.scatterings);
                 if first {
                     add_direct(sample, found.rules, l);
@@ -499,7 +490,7 @@ fn go_beneath(
     let entry = subsurface::Entry { it, n: frame.n, wi: frame.to_world(scattered.wi), vertex, cone: path.cone };
     let beta = path.beta * scattered.weight.sum();
     let came_out = match inside {
-        _ if shallow && path.by_lobe[Lobe::Diffuse as usize] > 0 => Some((*it, beta)),
+        _ if shallow && path.state.diffuse > 0 => Some((*it, beta)),
         Inside::Medium(medium) => entry.walk(scene, sampler, &medium, beta),
         Inside::Profile(profile) => entry.probe(scene, sampler, &profile, beta),
     };

@@ -24,11 +24,11 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Share of it that arrives at the origin of `ray`.
-    pub fn visibility(&self, scene: &Scene, ray: &Ray) -> Rgb {
+    /// Share of it that arrives at the origin of `ray`, on a path that has passed so many surfaces unscattered.
+    pub fn visibility(&self, scene: &Scene, ray: &Ray, passed: u16) -> Rgb {
         // Ends before the emitter, which may itself be something that stops light.
         let t_max = self.dist * (1.0 - 1e-5);
-        scene.arriving(&Ray { t_max, ..*ray }, self.rules)
+        scene.arriving(&Ray { t_max, ..*ray }, self.rules, passed)
     }
 }
 

@@ -27,44 +27,45 @@ impl Scene {
         self.bvh.closest_hit(ray, mask)
     }
 
-    /// Share of the light of an emitter with `rules` that arrives where `ray` begins, from as far as it goes.
-    pub fn arriving(&self, ray: &Ray, rules: &Rules) -> Rgb {
+    /// Share of the light of an emitter with `rules` that arrives where `ray` begins, from as far as it goes, on a path
+    /// that has passed so many surfaces unscattered.
+    pub fn arriving(&self, ray: &Ray, rules: &Rules, passed: u16) -> Rgb {
         match &rules.look {
-            None => self.transmittance(ray, rules.shadow),
-            Some(look) => self.arriving_beside(ray, rules.shadow, look),
+            None => self.transmittance(ray, rules.shadow, passed),
+            Some(look) => self.arriving_beside(ray, rules.shadow, look, passed),
         }
     }
 
     /// Share of light that passes along `ray`: black behind an opaque surface, the product of what
-    /// passes through cut-outs and blends; only what `shadow` names stops it.
-    pub fn transmittance(&self, ray: &Ray, shadow: Shadow) -> Rgb {
+    /// passes through cut-outs and blends, fewer by `passed` than a path may; only what `shadow` names stops it.
+    pub fn transmittance(&self, ray: &Ray, shadow: Shadow, passed: u16) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         if self.bvh.any_hit(ray, opaque) {
             return Rgb::BLACK;
         }
-        if self.effects.cutouts { self.passed(ray, cutout, |_| 1.0) } else { Rgb::WHITE }
+        if self.effects.cutouts { self.passed(ray, cutout, passed, |_| 1.0) } else { Rgb::WHITE }
     }
 
     /// [`Self::arriving`] beside shadows that look as `look` says.
     // Out of line, so that other lights have no part in it.
     #[cold]
-    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook) -> Rgb {
+    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook, passed: u16) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         let length = ray.d.length();
         let ray = Ray { t_max: ray.t_max.min(look.distance() / length), ..*ray };
         look.arriving(match look.fades() {
             // Which opaque blocker is the nearest matters.
-            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length)),
-            false => self.transmittance(&ray, shadow),
+            true => self.passed(&ray, opaque | cutout, passed, |t| look.strength(t * length)),
+            false => self.transmittance(&ray, shadow, passed),
         })
     }
 
     /// What passes the surfaces that `mask` sees, up to the first opaque one; one at `t` along `ray` counts for the
     /// share `strength(t)`.
-    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32) -> Rgb {
+    fn passed(&self, ray: &Ray, mask: u64, before: u16, strength: impl Fn(f32) -> f32) -> Rgb {
         let mut left = Rgb::WHITE;
         let (mut rest, mut t) = (*ray, 0.0);
-        for _ in 0..=self.max_transparent {
+        for _ in u32::from(before)..=self.max_transparent.max(u32::from(before)) {
             let Some(hit) = self.closest_hit(&rest, mask) else { return left };
             let mut it = self.interaction(&rest, &hit, RayCone { width: 0.0, spread: 0.0 });
             if self.effects.light_path {

@@ -781,12 +781,17 @@ def few_transmission_bounces():
 
 
 def panes():
-    """Five thin panes before a floor and a lamp, of which two may be passed."""
+    """Five thin panes before a floor and four between it and the sun, of which two may be passed."""
     room()
     pane = material("Pane", Base_Color=(0.8, 0.3, 0.2, 1.0), Alpha=0.4)
     for i in range(5):
         bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.4 * i - 1.0, -1.5, 0.8 + 0.2 * i))
         bpy.context.object.data.materials.append(pane)
+        bpy.context.object.visible_shadow = False
+    for i in range(4):
+        bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.4 * i + 1.0, 0.5, 2.0 + 0.2 * i))
+        bpy.context.object.data.materials.append(pane)
+        bpy.context.object.visible_camera = False
     lamp("SUN", rotation=(0.3, 0.2, 0.0), energy=3.0, angle=0.1)
     world(0.2)
     bpy.context.scene["cycles_settings"] = {"transparent_max_bounces": 2}
