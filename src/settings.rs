@@ -280,6 +280,22 @@ settings! {
         "Light transport: path, direct (nothing bounces) or ao (occlusion alone)";
     max_bounces: u32 = "12", Kind::Int { min: 0, max: 1 << 20 }, "N",
         "Scatterings after the first hit; 0 for direct light only";
+    diffuse_bounces: Option<u32> = "", Kind::Int { min: 0, max: 1 << 20 }, "N",
+        "Diffuse reflections among them; as many as --max-bounces unless set";
+    glossy_bounces: Option<u32> = "", Kind::Int { min: 0, max: 1 << 20 }, "N",
+        "Glossy reflections among them; as many as --max-bounces unless set";
+    transmission_bounces: Option<u32> = "", Kind::Int { min: 0, max: 1 << 20 }, "N",
+        "Passages through surfaces among them; as many as --max-bounces unless set";
+    transparent_bounces: u32 = "256", Kind::Int { min: 0, max: 1 << 15 }, "N",
+        "Cut-outs and blends that a path, or a shadow ray, passes unscattered at most; what a path meets after so many is black";
+    clamp_direct: f64 = "0", Kind::Float { min: 0.0, max: f64::MAX }, "X",
+        "Dim what one path adds by direct light to three times this, red, green and blue together; biased; 0 for never";
+    clamp_indirect: f64 = "0", Kind::Float { min: 0.0, max: f64::MAX }, "X",
+        "The same for light that has bounced";
+    caustics_reflective: bool = "on", Kind::Bool, "on|off",
+        "Light that is reflected by glossy surfaces onto diffuse ones";
+    caustics_refractive: bool = "on", Kind::Bool, "on|off",
+        "Light that passes through surfaces onto diffuse ones";
     ao_distance: Option<f64> = "", Kind::Float { min: 0.0, max: f64::MAX }, "D",
         "Occluders farther than this many metres do not count in the ao pass; unlimited unless set";
     ao_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",

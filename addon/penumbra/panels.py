@@ -91,9 +91,42 @@ class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
         column = layout.column()
         column.active = own.integrator == "path"
         column.prop(own, "max_bounces")
-        cycles = getattr(context.scene, "cycles", None)
-        if cycles is not None:
-            column.prop(cycles, "blur_glossy")
+
+
+class _LightPathsPanel(_Panel):
+    """Settings of light paths that are Cycles' own."""
+
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_light_paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene, "cycles")
+
+    def draw(self, context):
+        layout, cycles = self._split(), context.scene.cycles
+        layout.active = context.scene.penumbra.integrator == "path"
+        column = layout.column(align=True)
+        for name, text in self.ROWS:
+            column.prop(cycles, name, text=text)
+
+
+class PENUMBRA_PT_light_paths_bounces(_LightPathsPanel, bpy.types.Panel):
+    bl_label = "Of One Kind"
+    ROWS = (("diffuse_bounces", "Diffuse"), ("glossy_bounces", "Glossy"), ("transmission_bounces", "Transmission"),
+            ("transparent_max_bounces", "Transparent"))
+
+
+class PENUMBRA_PT_light_paths_clamping(_LightPathsPanel, bpy.types.Panel):
+    bl_label = "Clamping"
+    ROWS = (("sample_clamp_direct", "Direct Light"), ("sample_clamp_indirect", "Indirect Light"))
+
+
+class PENUMBRA_PT_light_paths_caustics(_LightPathsPanel, bpy.types.Panel):
+    bl_label = "Caustics"
+    ROWS = (("blur_glossy", "Filter Glossy"), ("caustics_reflective", "Reflective"),
+            ("caustics_refractive", "Refractive"))
 
 
 class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
@@ -247,6 +280,9 @@ PANELS = (
     PENUMBRA_PT_sampling_lights,
     PENUMBRA_PT_sampling_advanced,
     PENUMBRA_PT_light_paths,
+    PENUMBRA_PT_light_paths_bounces,
+    PENUMBRA_PT_light_paths_clamping,
+    PENUMBRA_PT_light_paths_caustics,
     PENUMBRA_PT_ambient_occlusion,
     PENUMBRA_PT_motion_blur,
     PENUMBRA_PT_film,

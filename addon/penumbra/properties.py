@@ -5,10 +5,22 @@ import penumbra
 
 from . import passes
 
+# What Cycles has properties of the scene for, with their names there.
+_CYCLES = {
+    "diffuse_bounces": "diffuse_bounces",
+    "glossy_bounces": "glossy_bounces",
+    "transmission_bounces": "transmission_bounces",
+    "transparent_bounces": "transparent_max_bounces",
+    "clamp_direct": "sample_clamp_direct",
+    "clamp_indirect": "sample_clamp_indirect",
+    "caustics_reflective": "caustics_reflective",
+    "caustics_refractive": "caustics_refractive",
+    "filter_glossy": "blur_glossy",
+}
 # What Blender has properties of its own for.
 _BLENDERS = {
-    "passes", "threads", "half", "filter", "filter_glossy", "motion_blur", "shadow_terminator_geometry_offset",
-    "shadow_terminator_shading_offset",
+    "passes", "threads", "half", "filter", "motion_blur", "shadow_terminator_geometry_offset",
+    "shadow_terminator_shading_offset", *_CYCLES,
 }
 _UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
 
@@ -82,7 +94,9 @@ def settings(scene, view_layer):
     kind = getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS").lower()
     width = getattr(cycles, "filter_width", 1.5)
     result["filter"] = "box:0.5" if kind == "box" else f"{kind}:{width}"
-    result["filter_glossy"] = getattr(cycles, "blur_glossy", 0.0)
+    for name, theirs in _CYCLES.items():
+        if hasattr(cycles, theirs):
+            result[name] = getattr(cycles, theirs)
     world = scene.world
     if world is not None and "ao_distance" not in result:
         result["ao_distance"] = world.light_settings.distance

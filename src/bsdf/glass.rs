@@ -113,6 +113,19 @@ impl Glass {
         }
     }
 
+    /// See [`super::lobe::AnyLobe::keep`].
+    pub fn keep(&mut self, [reflected, passed]: [bool; 2]) -> bool {
+        let [reflection, transmission] = &mut self.boundary.tints;
+        for (kept, tint, albedo) in
+            [(reflected, reflection, &mut self.albedo.above), (passed, transmission, &mut self.albedo.below)]
+        {
+            if !kept {
+                (*tint, *albedo) = (Rgb::BLACK, Rgb::BLACK);
+            }
+        }
+        !self.albedo.sum().is_black()
+    }
+
     /// Probability of reflection over passage at a microfacet.
     #[inline]
     fn pick(&self, [reflected, passed]: [Rgb; 2]) -> f32 {

@@ -141,6 +141,15 @@ impl AnyLobe {
             _ => {}
         }
     }
+
+    /// Of an interface, leaves reflection and passage as `kept` says; false where nothing is left.
+    #[cold]
+    pub fn keep(&mut self, kept: [bool; 2]) -> bool {
+        match self {
+            Self::Glass(lobe) => lobe.keep(kept),
+            _ => kept[0],
+        }
+    }
 }
 
 lobes! {

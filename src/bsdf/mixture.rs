@@ -84,6 +84,8 @@ pub struct Builder<'b> {
     /// Frame of what is added next, where it names none.
     base: FrameId,
     widening: Widening,
+    /// Whether interfaces reflect, and let pass.
+    kept: [bool; 2],
 }
 
 impl<'b> Builder<'b> {
@@ -98,7 +100,7 @@ impl<'b> Builder<'b> {
         bsdf.wo = Vec3::new(wo.x, wo.y, wo.z.abs());
         bsdf.ng = Vec3::new(ng.x, ng.y, ng.z * side);
         (bsdf.ns, bsdf.side, bsdf.softening) = (bsdf.ng, side, None);
-        Self { bsdf, entering, base: None, widening: Widening::default() }
+        Self { bsdf, entering, base: None, widening: Widening::default(), kept: [true; 2] }
     }
 
     /// The geometry stands for a smooth surface of normal `ns`, on the side of `wo`: what is lit and what is not goes by
@@ -119,6 +121,11 @@ impl<'b> Builder<'b> {
     /// The microfacets of what is added from now on are made wider.
     pub fn set_widening(&mut self, widening: Widening) {
         self.widening = widening;
+    }
+
+    /// What is added from now on reflects and refracts as `kept` says; diffuse light is as ever.
+    pub fn keep(&mut self, kept: [bool; 2]) {
+        self.kept = kept;
     }
 
     /// Microfacets of these widths, which count up to 1, made wider by normals that vary; `None` for a mirror.
@@ -164,6 +171,9 @@ impl<'b> Builder<'b> {
             let mut lobe: AnyLobe = lobe.into();
             if self.widening.least > 0.0 {
                 lobe.widen(self.widening.least);
+            }
+            if self.kept != [true; 2] && class == Class::Interface && !lobe.keep(self.kept) {
+                return;
             }
             self.bsdf.terms.push(Term { lobe, color, pick: 0.0, class, frame: frame.or(self.base) });
         }

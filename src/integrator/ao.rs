@@ -25,7 +25,12 @@ pub fn openness(
             let sampler = if rays > 1 { sampler.part(k, rays) } else { *sampler };
             let u = sampler.get_2d(Dimension::at_bounce(vertex, Decision::Ao));
             let w = frame.to_world(warp::sample_cosine_hemisphere(u));
-            scene.transmittance(&Ray { t_max, ..scene.shadow_ray(it, w, None) }, Shadow::Cast, media)
+            scene.transmittance(
+                &Ray { t_max, ..scene.shadow_ray(it, w, None) },
+                Shadow::Cast,
+                media,
+                it.path.transparent,
+            )
         })
         .sum();
     open * (1.0 / rays as f32)
@@ -39,7 +44,7 @@ fn distance(settings: &Settings) -> f32 {
 /// The integrator that renders nothing else: Combined holds the ao pass.
 pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings: &Settings) -> PixelSample {
     let mut sample = PixelSample::of(&scene.passes);
-    let Some(first) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
+    let Some(first) = super::path::first_surface(scene, sampler, ray, cone, settings, &mut sample) else {
         return sample;
     };
     let First { it, vertex, media, left } = first;

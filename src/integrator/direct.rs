@@ -108,7 +108,7 @@ impl Shading<'_> {
         if scene.is_caught(&ray) {
             return None;
         }
-        Some([irradiance * scene.arriving(&ray, rules, self.media), irradiance])
+        Some([irradiance * scene.arriving(&ray, rules, self.media, self.it.path.transparent), irradiance])
     }
 
     fn decision(&self, decision: Decision) -> Dimension {
@@ -116,13 +116,13 @@ impl Shading<'_> {
     }
 
     fn visibility(&self, scene: &Scene, wi: Vec3, end: Option<Vec3>, rules: &Rules) -> Rgb {
-        let ray = scene.shadow_ray(self.it, wi, end);
+        let (ray, passed) = (scene.shadow_ray(self.it, wi, end), self.it.path.transparent);
         if !scene.effects.absorption {
-            return scene.arriving(&ray, rules, self.media);
+            return scene.arriving(&ray, rules, self.media, passed);
         }
         let mut media = *self.media;
         scene.pass_boundary(&mut media, self.it, wi);
-        scene.arriving(&ray, rules, &media)
+        scene.arriving(&ray, rules, &media, passed)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::film::{CryptoSample, FirstHit, PixelSample};
 use crate::math::{Frame, Ray, Vec3};
-use crate::scene::{Interaction, MAX_TRANSPARENT, RayCone, Scene, mask};
+use crate::scene::{Interaction, RayCone, Scene, mask};
 
 /// When the one ray is sent, as it comes from the middle of the pixel and of the lens.
 const MIDDLE: f32 = 0.5;
@@ -26,7 +26,7 @@ pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
 /// in Cycles. A hole in the picture ends it.
 fn first_opaque(scene: &Scene, mut ray: Ray) -> Option<Interaction> {
     let mut last = None;
-    for _ in 0..MAX_TRANSPARENT {
+    for _ in 0..=scene.max_transparent {
         let Some(hit) = scene.closest_hit(&ray, mask::CAMERA) else { break };
         let it = scene.interaction(&ray, &hit, RayCone { width: 0.0, spread: 0.0 });
         if scene.is_holdout(&it) {

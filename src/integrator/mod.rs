@@ -6,6 +6,7 @@ mod direct;
 mod disk;
 mod first_hit;
 mod guide;
+mod limits;
 mod path;
 mod scattering;
 mod shadow;

@@ -12,6 +12,7 @@ pub use next::{First, first_surface};
 
 use super::direct::Shading;
 use super::first_hit::{describe, describe_shape};
+use super::limits::Limits;
 use super::scattering::Scattering;
 use super::split::to_film;
 use super::{ao, catcher, shadow_pass};
@@ -30,7 +31,8 @@ use scatter::scatter;
 const ROULETTE_AFTER: u32 = 3;
 
 /// Where a path stands.
-struct Path {
+struct Path<'a> {
+    limits: &'a Limits,
     ray: Ray,
     cone: RayCone,
     mask: u64,
@@ -45,8 +47,6 @@ struct Path {
     /// Share of each class in the first scattering.
     shares: ByLobe,
     scatterings: u32,
-    /// True where one of them was diffuse.
-    diffuse: bool,
     /// Factor of `beta` by what has absorbed light on the way.
     left: Rgb,
     /// What the path is inside of.
@@ -57,16 +57,17 @@ struct Path {
     min_pdf: f32,
     /// The last scattering; `None` for rays from the camera.
     last: Option<Scattering>,
-    /// What graphs may ask of it, where they do.
+    /// What limits and graphs ask of it.
     state: PathState,
     /// Where `ray` would have begun had it passed no surface since, and how far it has come.
     start: Vec3,
     travelled: f32,
 }
 
-impl Path {
-    fn from_camera(scene: &Scene, ray: Ray, cone: RayCone) -> Self {
+impl<'a> Path<'a> {
+    fn from_camera(scene: &Scene, ray: Ray, cone: RayCone, limits: &'a Limits) -> Self {
         Self {
+            limits,
             ray,
             cone,
             mask: mask::CAMERA,
@@ -76,7 +77,6 @@ impl Path {
             occlusion: 1.0,
             shares: ByLobe::BLACK,
             scatterings: 0,
-            diffuse: false,
             left: Rgb::WHITE,
             media: if scene.effects.absorption { scene.media_around(&ray) } else { Media::NONE },
             vertex: 0,
@@ -94,6 +94,16 @@ impl Path {
         self.left *= left;
         self.beta *= left;
     }
+
+    /// True where the path looks for emitters alone.
+    fn is_exhausted(&self) -> bool {
+        self.limits.exhausted(self.scatterings, &self.state)
+    }
+
+    /// True where it has passed all that it may: the next surface stops it.
+    fn has_passed_all(&self, scene: &Scene) -> bool {
+        self.state.transparent > 0 && u32::from(self.state.transparent) >= scene.max_transparent
+    }
 }
 
 /// One path from the camera along `ray`.
@@ -105,9 +115,9 @@ pub fn trace(
     settings: &Settings,
     max_bounces: u32,
 ) -> PixelSample {
-    let max_bounces = if scene.effects.indirect { max_bounces } else { 0 };
+    let limits = Limits::of(settings, if scene.effects.indirect { max_bounces } else { 0 });
     let mut sample = PixelSample::of(&scene.passes);
-    let mut path = Path::from_camera(scene, ray, cone);
+    let mut path = Path::from_camera(scene, ray, cone, &limits);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let mut in_front = None;
     loop {
@@ -128,15 +138,27 @@ pub fn trace(
             add_background(scene, &path, &mut sample);
             break;
         };
-        if path.scatterings > max_bounces {
+        if path.is_exhausted() {
             break;
         }
         if path.scatterings == 0 && scene.is_holdout(&it) {
             break;
         }
+        if path.has_passed_all(scene) {
+            if path.scatterings == 0 {
+                sample.alpha = path.alpha;
+            }
+            break;
+        }
         let frame = scene.shading_frame(&it);
         let mut bsdf = Bsdf::none();
-        scene.fill_bsdf(&mut bsdf, &it, &frame, path.share, Blur::of_path(settings, path.min_pdf));
+        scene.fill_bsdf(
+            &mut bsdf,
+            &it,
+            &frame,
+            path.share,
+            Blur::of_path(settings, path.min_pdf, path.mask == mask::DIFFUSE),
+        );
         let around;
         let media = if scene.effects.absorption {
             around = path.media;
@@ -178,8 +200,7 @@ pub fn trace(
         if !scatter(scene, sampler, &mut path, &shading, light_samples, &mut sample) {
             break;
         }
-        let only_emitters = path.scatterings > max_bounces;
-        if (only_emitters && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
+        if (path.is_exhausted() && !scene.effects.found_by_rays) || !survives(sampler, &mut path) {
             break;
         }
     }
@@ -193,7 +214,7 @@ pub fn trace(
 fn describe_first(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     settings: &Settings,
     sample: &mut PixelSample,
@@ -211,7 +232,7 @@ fn describe_first(
 }
 
 /// Russian roulette by the throughput; false where the path ends.
-fn survives(sampler: &Sampler, path: &mut Path) -> bool {
+fn survives(sampler: &Sampler, path: &mut Path<'_>) -> bool {
     if path.scatterings <= ROULETTE_AFTER {
         return true;
     }

@@ -24,11 +24,12 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Share of it that arrives at the origin of `ray`, within `media`.
-    pub fn visibility(&self, scene: &Scene, ray: &Ray, media: &Media) -> Rgb {
+    /// Share of it that arrives at the origin of `ray`, within `media`, on a path that has passed so many surfaces
+    /// unscattered.
+    pub fn visibility(&self, scene: &Scene, ray: &Ray, media: &Media, passed: u16) -> Rgb {
         // Ends before the emitter, which may itself be something that stops light.
         let t_max = self.dist * (1.0 - 1e-5);
-        scene.arriving(&Ray { t_max, ..*ray }, self.rules, media)
+        scene.arriving(&Ray { t_max, ..*ray }, self.rules, media, passed)
     }
 }
 

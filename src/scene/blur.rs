@@ -1,4 +1,4 @@
-//! Highlights that are made wider than the material says, where that was asked for.
+//! Highlights that are made wider than the material says, or left out, where that was asked for.
 
 use super::{Interaction, Scene};
 use crate::bsdf::Widening;
@@ -17,26 +17,35 @@ const MOST_VARIANCE: f32 = 0.18;
 /// too much more often than not.
 const MOST_STEP: f32 = 8.0;
 
-/// What widens the highlights of a surface.
+/// What widens the highlights of a surface, and hides them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Blur {
     /// Microfacets are at least so wide.
     least: f32,
     /// Normals are averaged over so many pixels; 0 for none.
     pixels: f32,
+    /// Reflections and refractions that are not seen.
+    hidden: [bool; 2],
 }
 
 impl Blur {
     /// For a surface at the end of a path whose most spread scattering drew its direction with the density
-    /// `min_pdf`, infinite as long as there were only mirrors.
-    pub fn of_path(settings: &Settings, min_pdf: f32) -> Self {
+    /// `min_pdf`, infinite as long as there were only mirrors; `from_diffuse` where its last one was diffuse, so that
+    /// highlights are caustics.
+    pub fn of_path(settings: &Settings, min_pdf: f32, from_diffuse: bool) -> Self {
         if min_pdf == f32::INFINITY {
-            return Self { pixels: settings.specular_aa as f32, least: 0.0 };
+            return Self { pixels: settings.specular_aa as f32, ..Self::default() };
         }
+        let hidden = [settings.caustics_reflective, settings.caustics_refractive].map(|seen| from_diffuse && !seen);
         let filter = settings.filter_glossy as f32;
         // Cycles' Filter Glossy: nothing for directions more likely than its value, up to a width of a half.
         let least = if filter > min_pdf { 0.5 * (1.0 - min_pdf / filter).sqrt() } else { 0.0 };
-        Self { least, pixels: 0.0 }
+        Self { least, pixels: 0.0, hidden }
+    }
+
+    /// Whether interfaces reflect, and let pass.
+    pub(super) fn kept(self) -> [bool; 2] {
+        self.hidden.map(|hidden| !hidden)
     }
 }
 

@@ -31,7 +31,7 @@ pub use media::{Interior, Media};
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use terminator::Terminator;
-pub use trace::{MAX_TRANSPARENT, RayCone};
+pub use trace::RayCone;
 
 use std::sync::Arc;
 
@@ -70,6 +70,8 @@ pub struct Scene {
     pub follows_camera: bool,
     /// True where Combined lacks what lies behind everything.
     pub film_transparent: bool,
+    /// Surfaces that a path or a shadow ray may pass unscattered: see the setting of transparent bounces.
+    pub max_transparent: u32,
     /// Opacity from which on a surface is what the data passes show.
     pub pass_alpha_threshold: f32,
     /// Names and hashes for the index and Cryptomatte passes.

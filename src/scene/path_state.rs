@@ -25,13 +25,13 @@ pub struct PathState {
     /// True where it comes from a perfect mirror or lens.
     pub singular: bool,
     /// Scatterings by diffuse lobes.
-    pub diffuse: u8,
+    pub diffuse: u16,
     /// Reflections by glossy lobes.
-    pub glossy: u8,
+    pub glossy: u16,
     /// Refractions.
-    pub transmission: u8,
+    pub transmission: u16,
     /// Surfaces passed unscattered.
-    pub transparent: u8,
+    pub transparent: u16,
     /// How far the ray came from where it was scattered last.
     pub length: f32,
 }
@@ -53,7 +53,7 @@ impl PathState {
 
     /// After a scattering that has made a ray of `kind`.
     pub fn scattered(self, kind: RayKind, singular: bool) -> Self {
-        let count = |n: u8, of: RayKind| n.saturating_add(u8::from(of == kind));
+        let count = |n: u16, of: RayKind| n.saturating_add(u16::from(of == kind));
         Self {
             kind,
             singular,

@@ -147,6 +147,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         background_visible,
         follows_camera: desc.dome_shaders.iter().any(|dome| graphs::follows_camera(&dome.graph, [dome.radiance])),
         film_transparent,
+        max_transparent: settings.transparent_bounces,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,

@@ -45,10 +45,11 @@ pub struct Anisotropy {
 
 impl Scene {
     /// Makes `bsdf` what scatters at `it`, seen from its `wo`, in the shading frame `frame`. `share` is the factor of
-    /// all of it, `blur` what its highlights are widened by.
+    /// all of it, `blur` what its highlights are widened by, or hidden.
     pub fn fill_bsdf(&self, bsdf: &mut Bsdf, it: &Interaction, frame: &Frame, share: f32, blur: Blur) {
         let material = self.material(it);
         let mut builder = self.builder(bsdf, it, frame);
+        builder.keep(blur.kept());
         let widening = self.widening(it, blur, |it| self.shading_frame(it).n);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);

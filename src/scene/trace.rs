@@ -5,9 +5,6 @@ use crate::bvh::Hit;
 use crate::light::{Emitter, Light, Rules, Shadow, ShadowLook};
 use crate::math::{Ray, Rgb, Vec3, offset_ray_origin};
 
-/// Surfaces that one ray may pass unscattered before it counts as stopped.
-pub const MAX_TRANSPARENT: u32 = 256;
-
 /// The footprint of a ray: a cone of width `width + spread · t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCone {
@@ -31,46 +28,46 @@ impl Scene {
     }
 
     /// Share of the light of an emitter with `rules` that arrives where `ray` begins, within `media`, from as far as it
-    /// goes.
-    pub fn arriving(&self, ray: &Ray, rules: &Rules, media: &Media) -> Rgb {
+    /// goes, on a path that has passed so many surfaces unscattered.
+    pub fn arriving(&self, ray: &Ray, rules: &Rules, media: &Media, passed: u16) -> Rgb {
         match &rules.look {
-            None => self.transmittance(ray, rules.shadow, media),
-            Some(look) => self.arriving_beside(ray, rules.shadow, look, media),
+            None => self.transmittance(ray, rules.shadow, media, passed),
+            Some(look) => self.arriving_beside(ray, rules.shadow, look, media, passed),
         }
     }
 
     /// Share of light that passes along `ray`, which begins within `media`: black behind an opaque surface, the product
-    /// of what passes through cut-outs and blends; only what `shadow` names stops it.
-    pub fn transmittance(&self, ray: &Ray, shadow: Shadow, media: &Media) -> Rgb {
+    /// of what passes through cut-outs and blends, of which it may pass fewer by `passed` than a path; only what `shadow` names stops it.
+    pub fn transmittance(&self, ray: &Ray, shadow: Shadow, media: &Media, passed: u16) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         if self.bvh.any_hit(ray, opaque) {
             return Rgb::BLACK;
         }
         let passes = self.effects.cutouts || self.effects.absorption;
-        if passes { self.passed(ray, cutout, |_| 1.0, media) } else { Rgb::WHITE }
+        if passes { self.passed(ray, cutout, |_| 1.0, media, passed) } else { Rgb::WHITE }
     }
 
     /// [`Self::arriving`] beside shadows that look as `look` says.
     // Out of line, so that other lights have no part in it.
     #[cold]
-    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook, media: &Media) -> Rgb {
+    fn arriving_beside(&self, ray: &Ray, shadow: Shadow, look: &ShadowLook, media: &Media, passed: u16) -> Rgb {
         let Some([opaque, cutout]) = blockers(shadow) else { return Rgb::WHITE };
         let length = ray.d.length();
         let ray = Ray { t_max: ray.t_max.min(look.distance() / length), ..*ray };
         look.arriving(match look.fades() {
             // Which opaque blocker is the nearest matters.
-            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length), media),
-            false => self.transmittance(&ray, shadow, media),
+            true => self.passed(&ray, opaque | cutout, |t| look.strength(t * length), media, passed),
+            false => self.transmittance(&ray, shadow, media, passed),
         })
     }
 
     /// What passes the surfaces that `mask` sees, up to the first opaque one; one at `t` along `ray` counts for the
     /// share `strength(t)`.
-    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32, media: &Media) -> Rgb {
+    fn passed(&self, ray: &Ray, mask: u64, strength: impl Fn(f32) -> f32, media: &Media, before: u16) -> Rgb {
         let mut left = Rgb::WHITE;
         let (mut rest, mut t) = (*ray, 0.0);
         let mut within = self.effects.absorption.then(|| (*media, ray.d.length()));
-        for _ in 0..MAX_TRANSPARENT {
+        for _ in u32::from(before)..=self.max_transparent.max(u32::from(before)) {
             let hit = self.closest_hit(&rest, mask);
             if let Some((media, length)) = &within {
                 left *= media.transmitted(hit.map_or(rest.t_max, |hit| hit.t) * length);

@@ -115,10 +115,12 @@ def side_by_side(name, folder, spp=256, size=64):
         layer.penumbra.use_pass_shadow = True
     cycles = scene.cycles
     cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = int(spp), False, False
-    # What a scene says of the filter itself counts.
-    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, scene.get("blur_glossy", 0.0)
+    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, 0.0
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 4
     cycles.pixel_filter_type = "BOX"
+    # What a scene says of light paths itself counts.
+    for key, value in scene.get("cycles_settings", {}).items():
+        setattr(cycles, key, value)
     scene.penumbra.spp, scene.penumbra.max_bounces = int(spp), 4
     paths = []
     for engine in ("CYCLES", "PENUMBRA"):
@@ -186,8 +188,8 @@ def through_the_doors(name, folder):
     scene = bpy.context.scene
     scene.render.engine = "PENUMBRA"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 48, 100
-    # Files have no place for Filter Glossy.
-    scene.cycles.pixel_filter_type, scene.cycles.blur_glossy = "BOX", 0.0
+    # Files have no place for Cycles' light paths.
+    scene.cycles.pixel_filter_type, scene.cycles.blur_glossy, scene.cycles.sample_clamp_indirect = "BOX", 0.0, 0.0
     scene.penumbra.spp, scene.penumbra.max_bounces = 128, 4
     picture = os.path.join(folder, "f12.exr")
     _render(picture)

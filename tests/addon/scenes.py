@@ -710,8 +710,8 @@ def bumpy():
     world(0.1)
 
 
-def filter_glossy():
-    """Caustics of a mirror, of glass and of rough metal beside a diffuse floor, blurred as much as Cycles does it."""
+def _shiny():
+    """Caustics of a mirror, of glass and of rough metal beside a diffuse floor."""
     room(material("Plain", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8, 1.0)))
     shiny = (material("Mirror", Base_Color=(0.9, 0.9, 0.9, 1.0), Metallic=1.0, Roughness=0.0),
              material("Glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.5),
@@ -723,7 +723,78 @@ def filter_glossy():
         bpy.context.object.data.materials.append(one)
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=0.5)
     world(0.1)
-    bpy.context.scene["blur_glossy"] = 1.0
+
+
+def filter_glossy():
+    _shiny()
+    bpy.context.scene["cycles_settings"] = {"blur_glossy": 1.0}
+
+
+def no_caustics():
+    _shiny()
+    bpy.context.scene["cycles_settings"] = {"caustics_reflective": False, "caustics_refractive": False}
+
+
+def no_refractive_caustics():
+    _shiny()
+    bpy.context.scene["cycles_settings"] = {"caustics_refractive": False, "blur_glossy": 1.0}
+
+
+def clamped():
+    """Light close to a wall, far above what a contribution may add."""
+    _shiny()
+    bpy.context.scene["cycles_settings"] = {"sample_clamp_direct": 1.0, "sample_clamp_indirect": 0.1}
+
+
+def _open_box(*others):
+    """A box without a front, lit by a lamp at its ceiling."""
+    white = material("White", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8, 1.0))
+    for location, rotation in (((0, 0, -1), (0, 0, 0)), ((0, 0, 1), (0, 0, 0)), ((-1, 0, 0), (0, math.pi / 2, 0)),
+                               ((1, 0, 0), (0, math.pi / 2, 0)), ((0, 1, 0), (math.pi / 2, 0, 0))):
+        bpy.ops.mesh.primitive_plane_add(size=2, location=location, rotation=rotation)
+        bpy.context.object.data.materials.append(white)
+    for i, one in enumerate(others):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.35, location=(0.8 * i - 0.4, 0.1, -0.6))
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(one)
+    lamp("AREA", (0, 0, 0.95), energy=20.0, size=0.6)
+    data = bpy.data.cameras.new("Camera")
+    bpy.context.scene.camera = add("Camera", data, location=(0, -3.6, 0), rotation_euler=(math.pi / 2, 0, 0))
+    world(0.0)
+
+
+def few_diffuse_bounces():
+    _open_box(material("Mirror", Base_Color=(0.9, 0.9, 0.9, 1.0), Metallic=1.0, Roughness=0.2))
+    bpy.context.scene["cycles_settings"] = {"diffuse_bounces": 1}
+
+
+def few_glossy_bounces():
+    mirror = material("Mirror", Base_Color=(0.9, 0.9, 0.9, 1.0), Metallic=1.0, Roughness=0.0)
+    _open_box(mirror, mirror)
+    bpy.context.scene["cycles_settings"] = {"glossy_bounces": 1}
+
+
+def few_transmission_bounces():
+    glass = material("Glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.3)
+    _open_box(glass, glass)
+    bpy.context.scene["cycles_settings"] = {"transmission_bounces": 1}
+
+
+def panes():
+    """Five thin panes before a floor and four between it and the sun, of which two may be passed."""
+    room()
+    pane = material("Pane", Base_Color=(0.8, 0.3, 0.2, 1.0), Alpha=0.4)
+    for i in range(5):
+        bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.4 * i - 1.0, -1.5, 0.8 + 0.2 * i))
+        bpy.context.object.data.materials.append(pane)
+        bpy.context.object.visible_shadow = False
+    for i in range(4):
+        bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.4 * i + 1.0, 0.5, 2.0 + 0.2 * i))
+        bpy.context.object.data.materials.append(pane)
+        bpy.context.object.visible_camera = False
+    lamp("SUN", rotation=(0.3, 0.2, 0.0), energy=3.0, angle=0.1)
+    world(0.2)
+    bpy.context.scene["cycles_settings"] = {"transparent_max_bounces": 2}
 
 
 def _filled(matter, node_type, **inputs):

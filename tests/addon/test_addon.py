@@ -50,7 +50,9 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "principled", "see_through", "depth_of_field", "panorama", "instances", "curve_and_text", "textured", "points",
              "world_gradient", "world_clouds", "world_camera_ray", "world_mixed", "sky_single", "sky_multiple",
              "sky_preetham", "holdout", "thin", "rough_diffuse", "glossy", "stretched", "coated", "cloth", "mixed_shaders",
-             "leaf", "red_film", "glow", "filter_glossy", "wax", "skin", "burley", "candle", "coarse", "bumpy",
+             "leaf", "red_film", "glow", "filter_glossy", "no_caustics",
+             "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
+             "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
              "uncorrected", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
              "catcher", "hair", "hair_curves_bent", "particle_fur", "particle_instances"]
 )

@@ -10,7 +10,7 @@ use crate::math::Rgb;
 use crate::scene::{Interaction, Scene};
 
 /// Lamps on a stretch of the way; they stop nothing.
-pub(super) fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &mut PixelSample) {
+pub(super) fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sample: &mut PixelSample) {
     let wi = path.ray.d;
     scene.lights.lamps_along(path.start, wi, segment, |i, light, hit| {
         let mut le = light.emitter.le(wi, Some(hit));
@@ -19,9 +19,10 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &
         }
         match &path.last {
             None if light.rules.seen.camera => {
-                sample.emission += path.beta * le;
+                let l = path.unscattered(le);
+                sample.emission += l;
                 sample.denoising_albedo += le;
-                add_unscattered(sample, &light.rules, path.beta * le);
+                add_unscattered(sample, &light.rules, l);
             }
             None => {}
             Some(last) => {
@@ -33,7 +34,7 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path, segment: [f32; 2], sample: &
 }
 
 /// What lies behind everything.
-pub(super) fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSample) {
+pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelSample) {
     if path.scatterings == 0 && scene.background_visible {
         sample.alpha = path.alpha;
     } else if path.scatterings == 0 && path.left != Rgb::WHITE {
@@ -43,9 +44,10 @@ pub(super) fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSampl
     for (i, light, le) in scene.background(path.ray.d) {
         match &path.last {
             None if light.rules.seen.camera => {
-                sample.environment += path.beta * le;
+                let l = path.unscattered(le);
+                sample.environment += l;
                 if !scene.film_transparent {
-                    add_unscattered(sample, &light.rules, path.beta * le);
+                    add_unscattered(sample, &light.rules, l);
                 }
             }
             None => {}
@@ -59,7 +61,7 @@ pub(super) fn add_background(scene: &Scene, path: &Path, sample: &mut PixelSampl
 
 /// What the surface at `it` emits towards the path. Of one that is partly open it is the mean, whether
 /// the path stops there or not, as light sampling and the shadow passes have it.
-pub(super) fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
+pub(super) fn add_emission(scene: &Scene, path: &Path<'_>, it: &Interaction, opacity: f32, sample: &mut PixelSample) {
     let le = scene.emission(it) * opacity;
     if le.is_black() || (path.last.is_none() && scene.is_holdout(it)) {
         return;
@@ -67,15 +69,21 @@ pub(super) fn add_emission(scene: &Scene, path: &Path, it: &Interaction, opacity
     let rules = scene.instance(it.instance).rules.as_deref().unwrap_or(&Rules::NONE);
     match &path.last {
         None => {
-            sample.emission += path.beta * le;
+            let l = path.unscattered(le);
+            sample.emission += l;
             sample.denoising_albedo += le;
-            add_unscattered(sample, rules, path.beta * le);
+            add_unscattered(sample, rules, l);
         }
         Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
     }
 }
 
-impl Path {
+impl Path<'_> {
+    /// What the camera sees of radiance `le` that nothing has scattered.
+    fn unscattered(&self, le: Rgb) -> Rgb {
+        self.limits.clamp(self.beta * le, 0)
+    }
+
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
     /// weight. Lights with shadow rules of their own are counted where the ray begins.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
@@ -83,6 +91,7 @@ impl Path {
             return;
         }
         let l = seen(last.shares, rules) * (self.beta * le);
+        let l = l * self.limits.factor(l.sum(), self.scatterings);
         if self.scatterings == 1 {
             add_direct(sample, rules, l);
         } else {

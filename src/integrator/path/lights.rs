@@ -1,6 +1,7 @@
 //! Direct light at a surface, by light sampling.
 
 use super::Path;
+use crate::bsdf::ByLobe;
 use crate::film::PixelSample;
 use crate::integrator::direct::Shading;
 use crate::integrator::shadow_pass;
@@ -12,7 +13,7 @@ use crate::scene::Scene;
 pub(super) fn add_lights(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     light_samples: u32,
     sample: &mut PixelSample,
@@ -33,7 +34,7 @@ pub(super) fn add_lights(
 fn add_light(
     scene: &Scene,
     sampler: &Sampler,
-    path: &Path,
+    path: &Path<'_>,
     shading: &Shading<'_>,
     samples: f32,
     sample: &mut PixelSample,
@@ -41,11 +42,12 @@ fn add_light(
     let Some(light) = shading.sample_light(scene, sampler, samples) else { return };
     let unoccluded = light.unoccluded * (path.beta * (1.0 / samples));
     let arrives = unoccluded * light.visibility;
+    let dimmed = |l: ByLobe| l * path.limits.factor(l.sum(), path.scatterings + 1);
     if path.scatterings > 0 {
-        return add_indirect(sample, light.rules, path.shares, arrives.sum());
+        return add_indirect(sample, light.rules, path.shares, dimmed(arrives).sum());
     }
-    add_direct(sample, light.rules, arrives);
+    add_direct(sample, light.rules, dimmed(arrives));
     if scene.effects.shadow {
-        sample.unshadowed += unoccluded.diffuse;
+        sample.unshadowed += dimmed(unoccluded).diffuse;
     }
 }

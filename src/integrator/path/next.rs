@@ -3,9 +3,11 @@
 use super::Path;
 use crate::film::PixelSample;
 use crate::integrator::first_hit::describe_shape;
+use crate::integrator::limits::Limits;
 use crate::math::{Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Coverage, Interaction, MAX_TRANSPARENT, Media, PathState, RayCone, Scene};
+use crate::scene::{Coverage, Interaction, Media, PathState, RayCone, Scene};
+use crate::settings::Settings;
 
 /// What a path meets on its way to the next surface that scatters.
 pub(super) enum Met<'a> {
@@ -16,14 +18,14 @@ pub(super) enum Met<'a> {
 }
 
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
-/// are passed by the odds of their opacity. `visit` is called with everything on the way.
+/// are passed by the odds of their opacity, unless so many were that the path may pass no more. `visit` is called with everything on the way.
 pub(super) fn next_surface(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
-    mut visit: impl FnMut(&Path, Met<'_>),
+    path: &mut Path<'_>,
+    mut visit: impl FnMut(&Path<'_>, Met<'_>),
 ) -> Option<Interaction> {
-    for _ in 0..MAX_TRANSPARENT {
+    loop {
         let Some(hit) = scene.closest_hit(&path.ray, path.mask) else {
             visit(path, Met::Stretch([path.travelled, f32::INFINITY]));
             if scene.effects.absorption {
@@ -38,6 +40,7 @@ pub(super) fn next_surface(
         if scene.effects.light_path {
             it.path = PathState { length: path.travelled, ..path.state };
         }
+        it.path.transparent = path.state.transparent;
         if scene.effects.absorption {
             path.absorb(hit.t);
         }
@@ -45,6 +48,9 @@ pub(super) fn next_surface(
         let coverage = if scene.effects.cutouts { scene.coverage(&it) } else { Coverage::OPAQUE };
         visit(path, Met::Surface(&it, coverage));
         let Coverage { opacity, passes, p_stop } = coverage;
+        if path.has_passed_all(scene) {
+            return Some(it);
+        }
         if p_stop == 1.0 || sampler.get_1d(Dimension::at_bounce(path.vertex, Decision::Opacity)) < p_stop {
             path.alpha *= coverage.alpha() / p_stop;
             path.share = opacity / p_stop;
@@ -58,9 +64,6 @@ pub(super) fn next_surface(
         path.state.transparent = path.state.transparent.saturating_add(1);
         path.ray = it.continued(&path.ray, hit.t);
     }
-    // Too many layers: stopped, as a shadow ray is.
-    path.beta = Rgb::BLACK;
-    None
 }
 
 /// The first surface that a ray from the camera does not pass.
@@ -81,9 +84,11 @@ pub fn first_surface(
     sampler: &Sampler,
     ray: Ray,
     cone: RayCone,
+    settings: &Settings,
     sample: &mut PixelSample,
 ) -> Option<First> {
-    let mut path = Path::from_camera(scene, ray, cone);
+    let limits = Limits::of(settings, 0);
+    let mut path = Path::from_camera(scene, ray, cone, &limits);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
         Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),

@@ -20,7 +20,7 @@ const SCATTERED_SPREAD: f32 = 0.25;
 pub(super) fn scatter(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
+    path: &mut Path<'_>,
     shading: &Shading<'_>,
     light_samples: u32,
     sample: &mut PixelSample,
@@ -41,9 +41,7 @@ pub(super) fn scatter(
         path.min_pdf = path.min_pdf.min(scattered.pdf);
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
-    if scene.effects.light_path {
-        path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
-    }
+    path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
     let last = Scattering {
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
@@ -55,7 +53,6 @@ pub(super) fn scatter(
     let beta = path.beta;
     path.beta *= scattered.weight.sum();
     path.scatterings += 1;
-    path.diffuse |= scattered.lobe == Lobe::Diffuse;
     if first {
         path.shares = last.shares;
     }
@@ -67,10 +64,13 @@ pub(super) fn scatter(
         emitters_along(scene, &last, &path.state, &path.ray, path.cone, unshadowed, |found| {
             let weight = seen(scattered.weight, found.rules);
             if unshadowed {
-                sample.unshadowed += weight.diffuse * (beta * found.le);
+                let l = weight * (beta * found.le);
+                sample.unshadowed += l.diffuse * path.limits.factor(l.sum(), 1);
             }
             if !found.rules.stops_like_rays() {
-                let l = weight * (beta * found.le * found.visibility(scene, &path.ray, &path.media));
+                let l = weight
+                    * (beta * found.le * found.visibility(scene, &path.ray, &path.media, path.state.transparent));
+                let l = l * path.limits.factor(l.sum(), path.scatterings);
                 if first {
                     add_direct(sample, found.rules, l);
                 } else {
@@ -98,7 +98,7 @@ pub(super) fn scatter(
 fn go_beneath(
     scene: &Scene,
     sampler: &Sampler,
-    path: &mut Path,
+    path: &mut Path<'_>,
     shading: &Shading<'_>,
     (scattered, beneath): (&BsdfSample, u8),
     light_samples: u32,
@@ -109,7 +109,7 @@ fn go_beneath(
     let entry = subsurface::Entry { it, n: frame.n, wi: frame.to_world(scattered.wi), vertex, cone: path.cone };
     let beta = path.beta * scattered.weight.sum();
     let came_out = match inside {
-        _ if shallow && path.diffuse => Some((*it, beta)),
+        _ if shallow && path.state.diffuse > 0 => Some((*it, beta)),
         Inside::Medium(medium) => entry.walk(scene, sampler, &medium, beta),
         Inside::Profile(profile) => entry.probe(scene, sampler, &profile, beta),
     };
