@@ -210,3 +210,24 @@ fn nodes_of_blender_say_what_their_volume_absorbs() {
     assert_eq!(sigma(&desc), [1.0, 2.0, 0.0]);
     assert!(told.len() == 1 && told[0].contains("Density"), "{told:?}");
 }
+
+#[test]
+fn the_volume_of_a_world_is_told() {
+    let output = json!([{"id": "Out", "name": "Out", "type": "SHADER", "enabled": true}]);
+    let nodes = json!([
+        {
+            "name": "Output", "type": "ShaderNodeOutputWorld", "properties": {"is_active_output": true},
+            "inputs": [
+                {"id": "Surface", "name": "Surface", "type": "SHADER", "enabled": true},
+                {"id": "Volume", "name": "Volume", "type": "SHADER", "enabled": true, "link": [1, 0]},
+            ],
+        },
+        {"name": "V", "type": "ShaderNodeVolumeScatter", "inputs": [], "outputs": output},
+    ]);
+    let mut scene = BlenderScene::default();
+    let document = json!({"version": [5, 0, 1], "world": {"name": "W", "nodes": {"nodes": nodes}}});
+    scene.set_document(&document.to_string()).unwrap();
+    let mut warnings = Warnings::new();
+    scene.scene(&mut warnings).unwrap();
+    assert!(warnings.iter().any(|warning| warning.what.contains("the world's volume")), "{warnings:?}");
+}

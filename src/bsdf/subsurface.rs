@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn channels_of_no_radius_are_lamberts() {
-        let mut bsdf = super::Bsdf::none();
+        let mut bsdf = crate::bsdf::Bsdf::none();
         let mut builder = Builder::new(&mut bsdf, Vec3::Z, Vec3::Z, true);
         let subsurface = Subsurface {
             weight: 1.0,
