@@ -1,0 +1,203 @@
+//! What the error of a render will be: a power of the samples, fitted to what it was.
+//!
+//! Independent samples have an error of n^-½, low-discrepancy samples of smooth light up to n^-3/2; a picture, which
+//! has both, lies between, near the slower one at last.
+
+use std::f64::consts::SQRT_2;
+
+use crate::film::{Accuracy, Figure, REPLICATES};
+
+/// Exponent that is expected before anything is known, and how far off it may be.
+const EXPONENT: (f64, f64) = (0.55, 0.08);
+
+/// What the exponent may change by on the way, which no fit shows.
+const DRIFT: f64 = 0.025;
+
+/// So many of the last checks are fitted.
+const FITTED: usize = 5;
+
+/// Half widths of a normal distribution's 10 to 90 % and 95 % intervals.
+const Z80: f64 = 1.281_552;
+const Z95: f64 = 1.959_964;
+
+/// How the error goes on, in units of the display's range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// At the last check; `None` while it can't be told.
+    pub error: Option<f64>,
+    /// At the end that samples or time set; `None` where there is none, or nothing is known.
+    pub at_end: Option<f64>,
+    /// Where it is to be.
+    pub target: Option<f64>,
+    /// Seconds from the start of the render to the target: the likely ones, and those that one in ten renders
+    /// stays below and nine in ten stay below.
+    pub target_at: Option<[f64; 3]>,
+}
+
+/// A check: samples per pixel, the picture's mean, and the error then.
+#[derive(Clone, Copy, Debug)]
+struct Check {
+    spp: f64,
+    error: Figure,
+}
+
+/// The checks of a render.
+#[derive(Clone, Debug)]
+pub(super) struct Forecast {
+    target: Option<f64>,
+    checks: Vec<Check>,
+    /// Seconds that the last check came after.
+    seconds: f64,
+}
+
+impl Forecast {
+    pub(super) fn new(target: Option<f64>) -> Self {
+        Self { target, checks: Vec::new(), seconds: 0.0 }
+    }
+
+    /// Takes in what a check gave after so many samples per pixel and seconds. Doubt ends what was known.
+    pub(super) fn note(&mut self, accuracy: &Accuracy, spp: f64, seconds: f64) {
+        self.seconds = seconds;
+        match accuracy.display {
+            Ok(error) => self.checks.push(Check { spp, error }),
+            Err(_) => self.checks.clear(),
+        }
+    }
+
+    /// True where the target is reached.
+    pub(super) fn is_reached(&self) -> bool {
+        self.checks.last().zip(self.target).is_some_and(|(check, target)| check.error.value <= target)
+    }
+
+    /// The exponent of the error's fall, and the standard deviation of what it is taken to be.
+    fn exponent(&self) -> (f64, f64) {
+        let (prior, sd) = EXPONENT;
+        let last = &self.checks[self.checks.len().saturating_sub(FITTED)..];
+        let known = last.iter().filter(|check| check.error.value > 0.0);
+        let points: Vec<[f64; 3]> = known
+            .map(|Check { spp, error }| {
+                // The interval is that of the picture's own error; the estimate by itself is surer.
+                let spread = (error.high / error.low).ln() / (2.0 * Z95) / (REPLICATES as f64).sqrt();
+                [spp.ln(), error.value.ln(), spread.max(1e-3).powi(-2)]
+            })
+            .collect();
+        let sum = |of: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(of).sum::<f64>();
+        let weight = sum(&|p| p[2]);
+        if points.len() < 2 || weight <= 0.0 {
+            return (prior, sd);
+        }
+        let (x, y) = (sum(&|p| p[2] * p[0]) / weight, sum(&|p| p[2] * p[1]) / weight);
+        let spread = sum(&|p| p[2] * (p[0] - x).powi(2));
+        let slope = -sum(&|p| p[2] * (p[0] - x) * (p[1] - y));
+        let precision = spread + sd.powi(-2);
+        ((slope + prior * sd.powi(-2)) / precision, (precision.recip() + DRIFT * DRIFT).sqrt())
+    }
+
+    /// Samples per pixel at which the target is reached, by the fit.
+    fn spp_at_target(&self) -> Option<f64> {
+        let (check, target) = self.checks.last().zip(self.target)?;
+        Some(check.spp * (check.error.value / target).max(1.0).powf(1.0 / self.exponent().0.max(0.1)))
+    }
+
+    /// Samples per pixel, the mean, after which to look again: half a doubling on, or a little beyond where the
+    /// target seems to be.
+    pub(super) fn next_check(&self, spp: f64) -> u32 {
+        let up = |spp: f64| (spp / REPLICATES as f64).ceil() as u32 * REPLICATES as u32;
+        let first = super::FIRST_CHECK;
+        if spp < f64::from(first) {
+            return first;
+        }
+        let least = up(spp + REPLICATES as f64);
+        let target = self.spp_at_target().map_or(u32::MAX, |target| up(target * 1.02));
+        up(spp * SQRT_2).min(target).max(least)
+    }
+
+    /// What is to be told, for a render that samples end at `end_spp` and time at `end_seconds`.
+    pub(super) fn outlook(&self, end_spp: Option<f64>, end_seconds: Option<f64>) -> Outlook {
+        let target = self.target;
+        let Some(check) = self.checks.last() else {
+            return Outlook { error: None, at_end: None, target, target_at: None };
+        };
+        let error = check.error.value;
+        let (exponent, sd) = self.exponent();
+        let exponent = exponent.max(0.1);
+        let by_time = end_seconds.map(|end| check.spp * (end / self.seconds.max(1e-9)).max(1.0));
+        let end = [end_spp, by_time].into_iter().flatten().min_by(f64::total_cmp);
+        let target_at = target.map(|target| {
+            let fall = (error / target).max(1.0).ln();
+            let spread = (check.error.high / check.error.low).max(1.0).ln() / (2.0 * Z95) / exponent;
+            let spread = if error > 0.0 { spread.hypot(fall * sd / (exponent * exponent)) } else { 0.0 };
+            [0.0, -Z80, Z80].map(|z| self.seconds * (fall / exponent + z * spread).exp())
+        });
+        let at_end = end.map(|end| error * (check.spp / end.max(check.spp)).powf(exponent));
+        Outlook { error: Some(error), at_end, target, target_at }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Doubt;
+
+    fn accuracy(error: f64) -> Accuracy {
+        let figure = Ok(Figure { value: error, low: error * 0.97, high: error / 0.97 });
+        Accuracy { rmse: figure, rel_mse: figure, display: figure }
+    }
+
+    /// Checks of a render whose error falls with this exponent, half a second a sample.
+    fn forecast(exponent: f64, target: f64) -> Forecast {
+        let mut forecast = Forecast::new(Some(target));
+        for spp in [16.0_f64, 24.0, 32.0, 48.0, 64.0] {
+            forecast.note(&accuracy(spp.powf(-exponent)), spp, 0.5 * spp);
+        }
+        forecast
+    }
+
+    #[test]
+    fn powers_are_continued() {
+        for exponent in [0.5, 0.62, 0.75] {
+            let at = 640.0;
+            let forecast = forecast(exponent, f64::powf(at, -exponent));
+            let outlook = forecast.outlook(Some(256.0), Some(1e9));
+            let [likely, low, high] = outlook.target_at.expect("known");
+            assert!((likely / (0.5 * at) - 1.0).abs() < 0.1, "{exponent}: {likely}");
+            assert!(low < 0.5 * at && 0.5 * at < high, "{exponent}: {low} to {high}");
+            let end = outlook.at_end.expect("known");
+            assert!((end / 256.0_f64.powf(-exponent) - 1.0).abs() < 0.05, "{exponent}: {end}");
+        }
+    }
+
+    #[test]
+    fn time_ends_what_samples_do_not() {
+        let by_time = forecast(0.5, 1e-3).outlook(None, Some(128.0)).at_end.expect("known");
+        assert!((by_time * 16.0 - 1.0).abs() < 0.05, "{by_time}");
+        assert_eq!(forecast(0.5, 1e-3).outlook(None, None).at_end, None);
+    }
+
+    #[test]
+    fn checks_are_half_doublings_and_meet_the_target() {
+        let open = Forecast::new(None);
+        assert_eq!([0.0, 16.0, 24.0, 64.0, 96.0].map(|spp| open.next_check(spp)), [16, 24, 40, 96, 136]);
+        let near = forecast(0.5, 1.0 / 72.0_f64.sqrt());
+        assert_eq!(near.next_check(64.0), 80);
+        assert!(!near.is_reached() && forecast(0.5, 0.13).is_reached());
+    }
+
+    #[test]
+    fn doubt_reaches_no_target() {
+        let mut forecast = forecast(0.5, 1.0);
+        assert!(forecast.is_reached());
+        forecast.note(&Accuracy { display: Err(Doubt::HeavyTail), ..accuracy(0.1) }, 96.0, 48.0);
+        assert!(!forecast.is_reached());
+        assert_eq!(forecast.outlook(Some(128.0), None).error, None);
+    }
+
+    #[test]
+    fn a_picture_without_error_is_there_at_once() {
+        let mut forecast = Forecast::new(Some(0.01));
+        let zero = Ok(Figure { value: 0.0, low: 0.0, high: 0.0 });
+        forecast.note(&Accuracy { rmse: zero, rel_mse: zero, display: zero }, 16.0, 1.0);
+        assert!(forecast.is_reached());
+        assert_eq!(forecast.outlook(None, None).target_at, Some([1.0; 3]));
+    }
+}
