@@ -3,6 +3,7 @@
     tests/run                                        # once: the Python environment with OpenImageIO
     cargo build --release --ignore-rust-version
     target/test-venv/bin/python benches/accuracy.py [--penumbra FILE] [--out RESULT.json] [--spp 16,32,64] [NAME ...]
+    target/test-venv/bin/python benches/accuracy.py --out RESULT.json --forecast       # those alone, again
     target/test-venv/bin/python benches/accuracy.py --table RESULT.json
 
 The truth is the difference to a picture of 64 times as many samples as the longest render has, with a seed of its
@@ -147,10 +148,16 @@ def measure(bench, scene, counts):
                 picture, attributes, _, _ = bench.render(scene, *common, "--adaptive", "on")
                 result["adaptive"].append({"spp": float(attributes["penumbra/samples"]), "seed": seed,
                                            "predicted": predicted(attributes), "true": truth(picture, reference)})
-    known = [r["predicted"]["display"][0] for r in result["renders"] if r["spp"] == min(counts) and r["predicted"]["display"]]
+    return result
+
+
+def foretell(bench, scene, result):
+    """Adds the forecast to what was measured, where the first error is known."""
+    first = min(row["spp"] for row in result["renders"])
+    known = [row["predicted"]["display"] for row in result["renders"] if row["spp"] == first]
+    known = [figure[0] for figure in known if figure]
     if known:
         result["forecast"] = forecast(bench, scene, statistics.mean(known))
-    return result
 
 
 def share(hits):
@@ -205,6 +212,7 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("accuracy.json"))
     parser.add_argument("--spp", default="16,32,64")
     parser.add_argument("--table", type=Path)
+    parser.add_argument("--forecast", action="store_true")
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     if args.table:
@@ -215,10 +223,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(args.penumbra, Path(folder))
         for name, scene in scenes(Path(folder)).items():
-            if name in results or (args.names and name not in args.names):
+            if (name in results) != args.forecast or (args.names and name not in args.names):
                 continue
             start = time.perf_counter()
-            results[name] = measure(bench, scene, counts)
+            if not args.forecast:
+                results[name] = measure(bench, scene, counts)
+            foretell(bench, scene, results[name])
             args.out.write_text(json.dumps(results))
             print(f"{name}: {time.perf_counter() - start:.0f} s", file=sys.stderr)
     table(results)

@@ -210,9 +210,13 @@ impl<'a> Job<'a> {
             if self.stopped() {
                 break;
             }
+            forecast.mark(spp, self.start.elapsed().as_secs_f64());
+            if spp < f64::from(FIRST_CHECK) {
+                continue;
+            }
             errors = film.errors();
             if let Some(errors) = &errors {
-                forecast.note(&errors.accuracy(), spp, self.start.elapsed().as_secs_f64());
+                forecast.note(&errors.accuracy(), spp);
             }
             *self.outlook() = Some(forecast.outlook(self.target_spp().map(f64::from), self.settings.time));
         }

@@ -151,7 +151,7 @@ mod tests {
         for (i, tile) in film.tiles().iter().enumerate() {
             for (pixel, (x, _)) in tile.pixels().enumerate() {
                 let samples = plan.samples(i, pixel, u32::MAX - 16);
-                assert!(samples.start == 16 && samples.end % 8 == 0 && samples.end <= 64);
+                assert!(samples.start == 16 && samples.end.is_multiple_of(8) && samples.end <= 64);
                 if x < 18 {
                     assert_eq!(samples.end, 16);
                 } else if x >= 22 {
