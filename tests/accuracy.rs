@@ -197,7 +197,7 @@ fn adaptive_renders_that_stop_at_a_target_are_unbiased() {
         values.iter().sum::<f64>() / values.len() as f64
     };
     let base = Settings {
-        error: Some(0.05),
+        error: Some(0.006),
         adaptive: true,
         max_bounces: 1,
         ..settings("combined,sample_count", Settings::MOST_FOR_ERROR)
