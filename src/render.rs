@@ -189,7 +189,7 @@ impl<'a> Job<'a> {
     /// Looks at the error between stages, ends where it is small enough, and where settings say so gives noisy pixels
     /// more samples.
     fn render_in_stages(&self, film: &mut Film) {
-        let mut forecast = Forecast::new(self.settings.error);
+        let mut forecast = Forecast::new(self.settings.error, self.settings.adaptive);
         let mut plan = self.settings.adaptive.then(|| Plan::new(film));
         let mut errors = None;
         let (mut taken, mut spp) = (0, 0.0);
