@@ -4,7 +4,7 @@ use std::time::SystemTime;
 
 use crate::desc::{CameraDesc, SceneDesc};
 use crate::error::Warnings;
-use crate::film::Film;
+use crate::film::{Doubt, Figure, Film};
 use crate::output::Metadata;
 use crate::render::Rendered;
 use crate::scene::{Prepared, View};
@@ -41,6 +41,31 @@ pub fn samples_per_pixel(film: &Film) -> f64 {
     film.samples() as f64 / (f64::from(film.width()) * f64::from(film.height()))
 }
 
+/// The noise of a picture in units of the display's range, as a phrase; `None` where it was not asked for.
+pub fn error_sentence(rendered: &Rendered) -> Option<String> {
+    Some(match rendered.accuracy?.display {
+        Ok(Figure { value, low, high }) => format!("error {value:.3e} ({low:.3e} to {high:.3e})"),
+        Err(doubt) => format!("error not estimable yet: {doubt}"),
+    })
+}
+
+/// What of the errors that `settings` ask for a render that was not interrupted fell short of, a sentence each.
+pub fn shortfalls(rendered: &Rendered, settings: &Settings) -> Vec<String> {
+    let mut list = Vec::new();
+    let Some(accuracy) = rendered.accuracy.filter(|_| !rendered.interrupted) else { return list };
+    if accuracy.rmse == Err(Doubt::TooFewSamples) && rendered.film.passes().iter().any(|chosen| chosen.pass.is_error())
+    {
+        list.push("errors are not known before 16 samples in every pixel: the error passes are 0".to_owned());
+    }
+    let Some(target) = settings.error else { return list };
+    if accuracy.display.is_err() || accuracy.display.is_ok_and(|figure| figure.value > target) {
+        let spp = samples_per_pixel(&rendered.film);
+        let error = error_sentence(rendered).unwrap_or_default();
+        list.push(format!("an error of {target} was not reached with {spp:.0} samples per pixel: {error}"));
+    }
+    list
+}
+
 /// What the picture of `rendered` says about its making; `warnings` are all that were told.
 pub fn metadata(
     scene: String,
@@ -59,6 +84,7 @@ pub fn metadata(
         samples: spp,
         seed: settings.seed,
         seconds: rendered.elapsed.as_secs_f64(),
+        accuracy: rendered.accuracy,
         date: Some(SystemTime::now()),
         non_finite: bad.count,
         non_finite_first: bad.first,

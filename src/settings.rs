@@ -271,9 +271,13 @@ macro_rules! settings {
 
 settings! {
     spp: u32 = "64", Kind::Int { min: 1, max: Settings::NO_LIMIT as u64 }, "N",
-        "Samples per pixel";
-    time: Option<f64> = "", Kind::Float { min: 0.0, max: 1e9 }, "SECONDS",
-        "Stop after so many seconds of rendering, whatever the samples; alone, the only rule";
+        "Samples per pixel; their mean with --adaptive";
+    error: Option<f64> = "", Kind::Float { min: 1e-6, max: 10.0 }, "E",
+        "Stop once the noise of Combined is this share of the display's range, as 0.01; without --spp, whatever the samples";
+    time: Option<f64> = "", Kind::Float { min: 1e-3, max: 1e9 }, "SECONDS",
+        "Stop after so many seconds of rendering; without --spp, whatever the samples";
+    adaptive: bool = "off", Kind::Bool, "on|off",
+        "Give noisy pixels more samples and clean ones fewer";
     passes: PassSet = "combined", Kind::Text, "LIST",
         "Passes to write, separated by commas, or all; those of light groups as shadow_NAME, or shadow_* for each, AOVs as aov:NAME";
     integrator: Integrator = "path", Kind::Choice(INTEGRATORS), "NAME",
@@ -331,8 +335,25 @@ settings! {
 }
 
 impl Settings {
-    /// Samples per pixel of a render that something else ends.
+    /// Samples per pixel of a render that time ends.
     pub const NO_LIMIT: u32 = u32::MAX;
+
+    /// Samples per pixel of a render that a small error is to end: it may never come.
+    pub const MOST_FOR_ERROR: u32 = 1 << 16;
+
+    /// True where the error of Combined has to be known, whether a pass shows it or not.
+    pub fn needs_error(&self) -> bool {
+        self.error.is_some() || self.adaptive
+    }
+
+    /// What the default number of samples gives way to where the user gave none: the other stop rules.
+    pub fn without_spp(&mut self) {
+        if self.time.is_some() {
+            self.spp = Self::NO_LIMIT;
+        } else if self.error.is_some() {
+            self.spp = Self::MOST_FOR_ERROR;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -354,7 +375,11 @@ mod tests {
         assert_eq!(def("spp").set(&mut settings, "0").unwrap_err(), "must be from 1 to 4294967295");
         assert!(def("spp").set(&mut settings, "many").is_err());
         assert!(def("integrator").set(&mut settings, "magic").unwrap_err().contains("path, direct, ao"));
-        assert!(def("time").set(&mut settings, "NaN").is_err());
+        for name in ["time", "error"] {
+            for text in ["NaN", "0", "-1", "inf", "1 %"] {
+                assert!(def(name).set(&mut settings, text).unwrap_err().starts_with("must be"), "{name} {text}");
+            }
+        }
         def("ao_distance").set(&mut settings, "2.5").unwrap();
         assert_eq!(settings.ao_distance, Some(2.5));
     }

@@ -73,8 +73,11 @@ fn renders_every_pass_to_parts_named_as_blender_names_them() {
     let scene = folder.write("tri.glb", triangle().bytes());
     let (out, png) = (folder.path("out.exr"), folder.path("out.png"));
     let args = ["render", text(&scene), "-o", text(&out), "--preview", text(&png), "--size", "32x24", "--spp", "2"];
-    let output = penumbra(&[&args[..], &["--passes", "all", "--progress", "none"]].concat());
+    let output = penumbra(
+        &[&args[..], &["--passes", "all,error,error_ao,error_shadow,error_trust", "--progress", "none"]].concat(),
+    );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("before 16 samples"), "{}", stderr(&output));
     assert!(stderr(&output).contains("no light in the scene"), "{}", stderr(&output));
     let picture = exr::read(&out).unwrap();
     assert_eq!((picture.width, picture.height), (32, 24));
@@ -193,6 +196,45 @@ fn a_time_limit_is_kept() {
     let output = penumbra(&["render", text(&scene), "-o", text(&out), "--size", "64x64", "--time", "1"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!((Duration::from_secs(1)..Duration::from_secs(8)).contains(&start.elapsed()), "{:?}", start.elapsed());
+}
+
+/// An attribute of the header, as text.
+fn attribute(path: &Path, name: &str) -> String {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let header = ::exr::meta::MetaData::read_from_buffered(file, true).unwrap().headers[0].clone();
+    let found = header.own_attributes.other.iter().find(|(key, _)| key.as_slice() == name.as_bytes());
+    let Some((_, ::exr::meta::attribute::AttributeValue::Text(text))) = found else { panic!("no {name}") };
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+/// The light of the two lamps, which are points, is the same in every sample but for the pixels at the edges.
+#[test]
+fn an_error_ends_a_render_and_is_told() {
+    let folder = Folder::new();
+    let scene = folder.write("two.glb", two_groups().bytes());
+    let out = folder.path("e.exr");
+    let render = |args: &[&str]| {
+        let start = ["render", text(&scene), "-o", text(&out), "--size", "64x64", "--progress", "json"];
+        penumbra(&[&start[..], args].concat())
+    };
+    let output = render(&["--error", "0.02", "--passes", "combined,error,error_trust,sample_count"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let numbers: Vec<f64> =
+        attribute(&out, "penumbra/error/display").split(' ').map(|text| text.parse().unwrap()).collect();
+    assert!(numbers[1] < numbers[0] && numbers[0] < numbers[2] && numbers[0] <= 0.02, "{numbers:?}");
+    let said = stderr(&output);
+    assert!(said.lines().last().unwrap().contains(&format!("error {:.3e}", numbers[0])), "{said}");
+    let progress: Vec<serde_json::Value> =
+        said.lines().filter(|line| line.starts_with('{')).map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(progress.last().unwrap()["error_target"], 0.02);
+    let taken = exr::read(&out).unwrap().layer("Debug Sample Count").unwrap().data[0];
+    assert!((16.0..4096.0).contains(&taken), "{taken}");
+    // Fewer samples than it takes: told, with the error that there is.
+    let output = render(&["--error", "1e-5", "--spp", "24"]);
+    assert!(output.status.success());
+    assert!(stderr(&output).contains("an error of 0.00001 was not reached with 24 samples"), "{}", stderr(&output));
+    let strict = render(&["--error", "1e-5", "--spp", "24", "--strict"]);
+    assert_eq!(strict.status.code(), Some(1), "{}", stderr(&strict));
 }
 
 #[test]
@@ -390,6 +432,14 @@ fn numbers_that_make_no_sense_are_refused() {
         [["--frame", "nan"], ["--frame", "inf"], ["--time", "nan"], ["--frames", "9-1"], ["--ao-distance", "-1"]]
     {
         assert_eq!(render(&args).status.code(), Some(2), "{args:?}");
+    }
+    for flag in ["--error", "--time"] {
+        for value in ["0", "-0.5", "nan", "inf", "much"] {
+            let output = render(&[flag, value]);
+            let said = stderr(&output);
+            let line = format!("error: invalid value '{value}' for '{flag} <");
+            assert!(output.status.code() == Some(2) && said.starts_with(&line), "{said}");
+        }
     }
     let huge = render(&["--size", "65536x65535", "--passes", "all"]);
     assert_eq!(huge.status.code(), Some(1), "{}", stderr(&huge));

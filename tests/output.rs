@@ -9,7 +9,8 @@ use exr::meta::attribute::AttributeValue;
 use penumbra::error::Error;
 use penumbra::film::cryptomatte::{CryptoKind, Manifest, id_from_name};
 use penumbra::film::{
-    CryptoSample, Film, FirstHit, Layer, PASSES, PassSet, Picture, PixelSample, SampleId, Split, Storage,
+    Accuracy, CryptoSample, Doubt, Figure, Film, FirstHit, Layer, PASSES, PassSet, Picture, PixelSample, SampleId,
+    Split, Storage,
 };
 use penumbra::math::{Rgb, Vec3};
 use penumbra::output::exr::{Compression, Options};
@@ -65,6 +66,11 @@ fn metadata() -> Metadata {
         samples: 64.0,
         seed: 7,
         seconds: 3.25,
+        accuracy: Some(Accuracy {
+            rmse: Ok(Figure { value: 0.5, low: 0.25, high: 1.0 }),
+            rel_mse: Err(Doubt::HeavyTail),
+            display: Ok(Figure { value: 0.02, low: 0.01, high: 0.04 }),
+        }),
         date: Some(UNIX_EPOCH + Duration::from_secs(951_782_400)),
         non_finite: 2,
         non_finite_first: Some(SampleId { x: 3, y: 4, index: 5 }),
@@ -157,6 +163,12 @@ fn the_header_tells_how_the_picture_was_made() {
             ("colorInteropID", "lin_rec709_scene"),
             ("penumbra/samples", "64"),
             ("penumbra/seed", "7"),
+            ("penumbra/error/display", "2.0000e-2 1.0000e-2 4.0000e-2"),
+            ("penumbra/error/rmse", "5.0000e-1 2.5000e-1 1.0000e0"),
+            (
+                "penumbra/error/rel_mse",
+                "not estimable yet: most of it lies in a few pixels, in which rare bright paths were found",
+            ),
             ("penumbra/non_finite", "2"),
             ("penumbra/non_finite_first", "3,4,5"),
             ("penumbra/warnings", "a.glb, node: one\ntwo"),
@@ -226,8 +238,8 @@ fn layers_are_blenders_by_name_and_channel() {
         "Denoising Depth.Z",
     ];
     assert_eq!(names, expected);
-    // Of groups there are none here; a Cryptomatte is three layers.
-    let once = PASSES.iter().filter(|pass| pass.prefix().is_none());
+    // Of groups there are none here, of errors none in `all`; a Cryptomatte is three layers.
+    let once = PASSES.iter().filter(|pass| pass.prefix().is_none() && !pass.is_error());
     assert_eq!(once.count() + 6, expected.len());
 }
 

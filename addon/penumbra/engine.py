@@ -86,7 +86,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""
         settings = properties.settings(scene, view_layer)
         if self.is_preview:
-            settings.update(spp=_PREVIEW_SPP, time=_PREVIEW_SECONDS, passes=["combined"])
+            settings.update(spp=_PREVIEW_SPP, time=_PREVIEW_SECONDS, passes=["combined"], error=None, adaptive=False)
         return settings
 
     def view_update(self, context, depsgraph):
@@ -131,6 +131,8 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             text = f"Sample {count}"
             if progress["remaining"] is not None and progress["done"] < 1.0:
                 text += f" | {_clock(progress['remaining'])} left"
+            if progress["error_target"] is not None or progress["error"] is not None:
+                text += f" | {_noise(progress)}"
             self.update_stats("", text)
         return self.test_break()
 
@@ -153,6 +155,19 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         """Each warning in Blender's own reports, once; not at every change of a node for its preview."""
         for warning in [] if self.is_preview else warnings:
             self.report({"WARNING"}, warning)
+
+
+def _noise(progress):
+    """The noise now, at the end, and when it will be what it is to be, as far as that is known."""
+    if progress["error"] is None:
+        return "Noise not estimable yet"
+    text = f"Noise {progress['error']:.2g}"
+    if progress["error_at_end"] is not None:
+        text += f", {progress['error_at_end']:.2g} at the end"
+    if progress["to_target"] is not None:
+        _, soonest, latest = progress["to_target"]
+        text += f", {progress['error_target']:.2g} in {_clock(soonest)} to {_clock(latest)}"
+    return text
 
 
 def _clock(seconds):

@@ -48,8 +48,10 @@ class PENUMBRA_PT_sampling_render(_Panel, bpy.types.Panel):
     def draw(self, context):
         layout, own = self._split(), context.scene.penumbra
         column = layout.column(align=True)
-        column.prop(own, "spp", text="Samples")
+        column.prop(own, "error", text="Noise Target")
+        column.prop(own, "spp", text="Max Samples" if own.error > 0.0 else "Samples")
         column.prop(own, "time", text="Time Limit")
+        layout.prop(own, "adaptive", text="Adaptive")
 
 
 class PENUMBRA_PT_sampling_lights(_Panel, bpy.types.Panel):
@@ -227,6 +229,8 @@ class PENUMBRA_PT_passes_data(_Passes, bpy.types.Panel):
         ("Denoising", (("denoising_normal", "Normal"), ("denoising_albedo", "Albedo"), ("denoising_depth", "Depth"))),
         ("Indexes", (("object_index", "Object Index"), ("material_index", "Material Index"))),
         ("Debug", (("sample_count", "Sample Count"),)),
+        ("Error", (("error", "Combined"), ("error_ao", "Ambient Occlusion"), ("error_shadow", "Shadow"),
+                   ("error_trust", "Trust"))),
     )
 
     def draw(self, context):

@@ -24,6 +24,9 @@ _BLENDERS = {
 }
 _UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
 
+# Digits behind the point where two are too few.
+_DIGITS = {"error": 4}
+
 
 def _property(row):
     kind, default = row["kind"], row["default"]
@@ -42,6 +45,8 @@ def _property(row):
     if kind == "float":
         if row["name"] in _UNITS:
             common["unit"] = _UNITS[row["name"]]
+        if row["name"] in _DIGITS:
+            common.update(precision=_DIGITS[row["name"]], step=0.1)
         return bpy.props.FloatProperty(default=number, min=lowest, max=min(row["max"], 3e38), **common)
     return bpy.props.IntProperty(default=number, min=lowest, max=min(row["max"], 2**31 - 1), **common)
 

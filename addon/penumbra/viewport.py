@@ -47,8 +47,7 @@ class Viewport:
         view = _view(context, depsgraph)
         if self.stale or view != self.view:
             settings = properties.settings(scene, context.view_layer)
-            settings.update(passes=["combined"], spp=scene.penumbra.viewport_spp)
-            settings.pop("time", None)
+            settings.update(passes=["combined"], spp=scene.penumbra.viewport_spp, time=None, error=None, adaptive=False)
             changed, self.stale, self.view = self.stale, False, view
             try:
                 self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use penumbra::render::{Observer, Progress};
+use serde_json::json;
 
 use super::say;
 
@@ -82,10 +83,11 @@ impl Observer for Reporter {
                 bar.set_position((progress.done * 1000.0) as u64);
                 let of = progress.target_spp.map(|n| format!("/{n}")).unwrap_or_default();
                 let left = left.map_or_else(|| "?".into(), clock);
-                bar.set_message(format!("{:.0}{of} spp  {} left", progress.spp, left));
+                let error = progress.outlook.map(|_| format!("  {}", error(progress))).unwrap_or_default();
+                bar.set_message(format!("{:.0}{of} spp  {left} left{error}", progress.spp));
             }
             Self::Json { output, frame } => {
-                let line = serde_json::json!({
+                let mut line = json!({
                     "output": output,
                     "frame": frame,
                     "done": progress.done,
@@ -94,6 +96,12 @@ impl Observer for Reporter {
                     "elapsed_s": progress.elapsed.as_secs_f64(),
                     "remaining_s": left,
                 });
+                if let Some(outlook) = progress.outlook {
+                    line["error"] = json!(outlook.error);
+                    line["error_at_end"] = json!(outlook.at_end);
+                    line["error_target"] = json!(outlook.target);
+                    line["to_target_s"] = json!(progress.to_target());
+                }
                 say::err(line.to_string());
             }
             Self::None => {}
@@ -103,6 +111,20 @@ impl Observer for Reporter {
     fn cancelled(&self) -> bool {
         interrupted()
     }
+}
+
+/// Error now, at the end, and the time to its target, as far as they are known.
+fn error(progress: &Progress) -> String {
+    let Some(outlook) = progress.outlook else { return String::new() };
+    let Some(now) = outlook.error else { return "error not estimable yet".into() };
+    let mut text = format!("error {now:.2e}");
+    if let Some(end) = outlook.at_end {
+        text += &format!(", {end:.2e} at the end");
+    }
+    if let (Some(target), Some([likely, low, high])) = (outlook.target, progress.to_target()) {
+        text += &format!(", {target} in {} ({} to {})", clock(likely), clock(low), clock(high));
+    }
+    text
 }
 
 /// `1:02:03`, `2:03` or `3.4 s`.
@@ -120,7 +142,29 @@ pub fn clock(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::clock;
+    use super::{clock, error};
+    use penumbra::render::{Outlook, Progress};
+    use std::time::Duration;
+
+    #[test]
+    fn the_error_is_told_as_far_as_it_is_known() {
+        let unknown = Outlook { error: None, at_end: None, target: Some(0.01), target_at: None };
+        let mut progress = Progress {
+            spp: 64.0,
+            target_spp: None,
+            done: 0.5,
+            elapsed: Duration::from_secs(5),
+            remaining: None,
+            outlook: Some(unknown),
+        };
+        assert_eq!(error(&progress), "error not estimable yet");
+        let known = Outlook { error: Some(0.02), at_end: Some(0.005), target_at: Some([25.0, 20.0, 95.0]), ..unknown };
+        progress.outlook = Some(known);
+        let text = "error 2.00e-2, 5.00e-3 at the end, 0.01 in 20 s (15 s to 1:30)";
+        assert_eq!(error(&progress), text);
+        progress.outlook = None;
+        assert_eq!(error(&progress), "");
+    }
 
     #[test]
     fn times_read_as_people_write_them() {

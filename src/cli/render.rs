@@ -122,9 +122,8 @@ fn settings(args: &ArgMatches) -> Settings {
             command().bin_name("penumbra render").error(clap::error::ErrorKind::ValueValidation, message).exit();
         }
     }
-    // Alone, the time is the rule.
-    if settings.time.is_some() && args.value_source("spp") != Some(ValueSource::CommandLine) {
-        settings.spp = Settings::NO_LIMIT;
+    if args.value_source("spp") != Some(ValueSource::CommandLine) {
+        settings.without_spp();
     }
     settings
 }
@@ -174,6 +173,11 @@ fn render_frame(
         warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
         say::err(format!("warning: {what}"));
     }
+    let short = job::shortfalls(&rendered, settings);
+    for what in &short {
+        warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
+        say::err(format!("warning: {what}"));
+    }
     let spp = job::samples_per_pixel(film);
     let name = scene::path(args).display().to_string();
     let metadata = job::metadata(name, frame, &prepared, &rendered, settings, &warnings);
@@ -194,6 +198,9 @@ fn render_frame(
     if args.get_flag("strict") && bad.count > 0 {
         bail!("--strict: {} samples were not finite; {} is written", bad.count, saved.display());
     }
+    if let (true, Some(what)) = (args.get_flag("strict"), short.first()) {
+        bail!("--strict: {what}; {} is written", saved.display());
+    }
     let seconds = clock(rendered.elapsed.as_secs_f64());
     if rendered.interrupted {
         say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
@@ -201,9 +208,10 @@ fn render_frame(
     }
     rendering(false);
     let [width, height] = scene.size;
+    let error = job::error_sentence(&rendered).map(|error| format!(", {error}")).unwrap_or_default();
     let others = more.iter().skip(1).map(|(out, _)| format!(", {}", out.display())).collect::<String>();
-    let out = out.display();
-    say::err(format!("{out}{others}: {width}x{height}, camera {}, {spp:.0} spp, {seconds}", prepared.camera));
+    let (out, camera) = (out.display(), &prepared.camera);
+    say::err(format!("{out}{others}: {width}x{height}, camera {camera}, {spp:.0} spp, {seconds}{error}"));
     Ok(Outcome::Done)
 }
 
@@ -251,6 +259,7 @@ fn debug_sample(
         bail!("--debug-sample: pixel ({x}, {y}) is outside of the {width}x{height} picture");
     }
     let (x, y) = (x as u32, y as u32);
+    let index = u32::try_from(index).map_or(index, |index| scene.passes.sequence_place(index));
     let sampler = penumbra::sampling::Sampler::new(settings.sampler, settings.seed).for_sample(x, y, index);
     let (sample, weight) = penumbra::integrator::sample(scene, settings, &sampler, x, y);
     say::out(format!("{sample:#?}\nfilter weight {weight}\n"));

@@ -35,7 +35,7 @@ impl Chosen<'_> {
     /// Names of all of its layers.
     pub(super) fn layers(&self) -> Vec<String> {
         match self.pass.develop {
-            Develop::Pixel(_) => vec![self.layer()],
+            Develop::Pixel(_) | Develop::Error(_) | Develop::Trust => vec![self.layer()],
             Develop::Cryptomatte(_) => (0..DEPTH / 2).map(|i| format!("{}{i:02}", self.pass.layer)).collect(),
         }
     }

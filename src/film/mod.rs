@@ -4,6 +4,7 @@
 //! [`Film`] adds up exactly the quantities the choice needs, in tiles that threads own one at a time,
 //! and [`Film::develop`] turns them into a [`Picture`] at any moment.
 
+mod accuracy;
 mod aov;
 mod chosen;
 pub mod cryptomatte;
@@ -12,10 +13,12 @@ mod pass;
 mod pass_set;
 mod picture;
 mod quantity;
+mod replicates;
 mod sample;
 mod store;
 mod tile;
 
+pub use accuracy::{Accuracy, Doubt, Figure, PixelErrors};
 pub use aov::{Aov, AovKind};
 pub use chosen::Chosen;
 pub use filter::{FILTERS, Filter, FilterRow};
@@ -23,6 +26,7 @@ pub use pass::{PASSES, Pass, Storage};
 pub use pass_set::PassSet;
 pub use picture::{Layer, Picture};
 pub use quantity::{Quantities, Quantity};
+pub use replicates::{LEAST_PER_REPLICATE, REPLICATES};
 pub use sample::{CryptoSample, FirstHit, GroupSample, PixelSample, Split};
 pub use store::Film;
 pub use tile::{NonFinite, SampleId, Tile};

@@ -62,7 +62,7 @@ impl Means<'_> {
     }
 
     /// Combined, with what lies behind shadow catchers darkened by the shadows on them and covered by as much.
-    fn combined(&self) -> [f64; 4] {
+    pub(super) fn combined(&self) -> [f64; 4] {
         let mut combined = self.of(Q::Combined);
         if self.has_catchers {
             let (lit, all) = (self.of(Q::CatcherLit), self.of(Q::CatcherUnshadowed));
@@ -80,6 +80,11 @@ impl Means<'_> {
     fn ratio(&self, a: Quantity, b: Quantity) -> [f64; 4] {
         let (a, b) = (self.of(a), self.of(b));
         std::array::from_fn(|i| if b[i] == 0.0 { 0.0 } else { a[i] / b[i] })
+    }
+
+    /// The shadow of all lights.
+    fn whole_shadow(&self) -> [f64; 4] {
+        self.shadow([[Q::DiffuseDirect, Q::Unshadowed], [Q::IrradianceShadowed, Q::IrradianceUnshadowed]])
     }
 
     /// S = mean of the shadowed / mean of the unshadowed light, from the first pair that has light, else 1.
@@ -102,6 +107,10 @@ impl Means<'_> {
 pub(super) enum Develop {
     /// Per pixel, the first `channels` of four numbers.
     Pixel(fn(&Means<'_>) -> [f64; 4]),
+    /// The estimated standard error of such numbers.
+    Error(fn(&Means<'_>) -> [f64; 4]),
+    /// Whether the error of Combined can be believed.
+    Trust,
     /// Ranked ids and coverages, two to a layer.
     Cryptomatte(CryptoKind),
 }
@@ -136,6 +145,12 @@ impl Pass {
         self.name.strip_suffix(GROUP).or_else(|| self.name.strip_suffix(AOV))
     }
 
+    /// True for the standard error of another pass, and what there is to say about it: samples are dealt in another
+    /// way where one is asked for.
+    pub const fn is_error(&self) -> bool {
+        matches!(self.develop, Develop::Error(_) | Develop::Trust)
+    }
+
     /// True for the row of AOVs.
     pub fn is_of_aovs(&self) -> bool {
         self.name.ends_with(AOV)
@@ -154,6 +169,16 @@ const fn pixel(
     Pass { name, layer, channels, storage, needs, develop: Develop::Pixel(develop), help }
 }
 
+const fn error(
+    name: &'static str,
+    layer: &'static str,
+    needs: &'static [Quantity],
+    develop: fn(&Means<'_>) -> [f64; 4],
+    help: &'static str,
+) -> Pass {
+    Pass { name, layer, channels: "RGB", storage: Storage::Data, needs, develop: Develop::Error(develop), help }
+}
+
 const fn crypto(name: &'static str, kind: CryptoKind, needs: &'static [Quantity], help: &'static str) -> Pass {
     let develop = Develop::Cryptomatte(kind);
     Pass { name, layer: kind.layer(), channels: "rgba", storage: Storage::Data, needs, develop, help }
@@ -161,6 +186,9 @@ const fn crypto(name: &'static str, kind: CryptoKind, needs: &'static [Quantity]
 
 use Quantity as Q;
 use Storage::{Color, Data};
+
+/// What the shadow pass is made of.
+const SHADOW: &[Quantity] = &[Q::DiffuseDirect, Q::Unshadowed, Q::IrradianceShadowed, Q::IrradianceUnshadowed];
 
 /// The passes, in the order in which a file holds them.
 #[rustfmt::skip]
@@ -209,9 +237,7 @@ pub static PASSES: &[Pass] = &[
         "radiance of the world where the camera sees it"),
     pixel("ao", "Ambient Occlusion", "RGB", Color, &[Q::Ao], |m| m.of(Q::Ao),
         "cosine-weighted openness times coverage: 1 open, 0 closed; background 0"),
-    pixel("shadow", "Shadow", "RGB", Color,
-        &[Q::DiffuseDirect, Q::Unshadowed, Q::IrradianceShadowed, Q::IrradianceUnshadowed],
-        |m| m.shadow([[Q::DiffuseDirect, Q::Unshadowed], [Q::IrradianceShadowed, Q::IrradianceUnshadowed]]),
+    pixel("shadow", "Shadow", "RGB", Color, SHADOW, |m| m.whole_shadow(),
         "share of the direct light that arrives: 1 lit, 0 in full shadow; 1 where no light could reach"),
     pixel("unshadowed", "Diffuse Direct Unshadowed", "RGB", Color, &[Q::Unshadowed, Q::DiffuseColor],
         |m| m.ratio(Q::Unshadowed, Q::DiffuseColor),
@@ -224,6 +250,14 @@ pub static PASSES: &[Pass] = &[
         "Shadow of the lights of a light group alone"),
     pixel("sample_count", "Debug Sample Count", "X", Data, &[], |m| [f64::from(m.count), 0.0, 0.0, 0.0],
         "samples in the pixel"),
+    error("error", "Error", &[Q::Combined], |m| m.combined(),
+        "estimated standard error of Combined; 0 below 16 samples"),
+    error("error_ao", "Error Ambient Occlusion", &[Q::Ao], |m| m.of(Q::Ao),
+        "the same of the ao pass"),
+    error("error_shadow", "Error Shadow", SHADOW, |m| m.whole_shadow(),
+        "the same of the shadow pass"),
+    Pass { name: "error_trust", layer: "Error Trust", channels: "X", storage: Data, needs: &[Q::Combined], develop: Develop::Trust,
+        help: "1 where the error of Combined is to be believed, 0 where it hangs on a few samples" },
     pixel("aov:<name>", "<name>", "RGBA", Data, &[Q::Aov], |m| m.aov(),
         "what the AOV Output nodes of that name give; X alone for numbers"),
     crypto("crypto_object", CryptoKind::Object, &[Q::CryptoObject], "Cryptomatte of objects"),

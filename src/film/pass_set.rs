@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use super::aov::Aov;
 use super::chosen::{Chosen, Of, layer_name};
-use super::pass::PASSES;
+use super::pass::{PASSES, Pass};
 use super::quantity::{Quantities, Quantity};
+use super::replicates::place;
 
 /// Most AOVs of a render: materials number what varies in a byte.
 const MOST_AOVS: usize = 255;
@@ -36,6 +37,8 @@ pub struct PassSet {
     /// AOVs whose sums are kept, those of `choices`.
     aovs: Vec<Aov>,
     quantities: Quantities,
+    /// Those of `quantities` whose error is asked for.
+    replicated: Quantities,
 }
 
 impl fmt::Display for PassSet {
@@ -64,13 +67,14 @@ impl Default for PassSet {
 }
 
 impl PassSet {
-    /// Every pass there is, those of every light group and AOV included.
+    /// Every pass there is, those of every light group and AOV included, but for the errors.
     pub fn all() -> Self {
-        Self::from_choices(vec![Choice::All; PASSES.len()], Vec::new(), Vec::new())
+        let choice = |pass: &Pass| if pass.is_error() { Choice::Nothing } else { Choice::All };
+        Self::from_choices(PASSES.iter().map(choice).collect(), Vec::new(), Vec::new())
     }
 
-    /// A comma-separated list of names, or `all`. An empty list is Combined alone. In the rows of
-    /// groups and AOVs the name of one stands for `<…>`, or `*` for each.
+    /// A comma-separated list of names, among them `all` for every one but the errors. An empty list is Combined
+    /// alone. In the rows of groups and AOVs the name of one stands for `<…>`, or `*` for each.
     ///
     /// # Errors
     /// A message that names the unknown pass and those there are.
@@ -78,7 +82,9 @@ impl PassSet {
         let mut choices = vec![Choice::Nothing; PASSES.len()];
         for name in list.split(',').map(str::trim).filter(|name| !name.is_empty()) {
             if name.eq_ignore_ascii_case("all") {
-                return Ok(Self::all());
+                let every = PASSES.iter().zip(&mut choices).filter(|(pass, _)| !pass.is_error());
+                every.for_each(|(_, choice)| *choice = Choice::All);
+                continue;
             }
             let (row, one) = find(name).ok_or_else(|| unknown(name))?;
             match (one, &mut choices[row]) {
@@ -159,14 +165,43 @@ impl PassSet {
             use Quantity::{Behind, CatcherLit, CatcherShare, CatcherUnshadowed};
             let all = [CatcherLit, CatcherUnshadowed, CatcherShare, Behind];
             self.quantities = all.into_iter().fold(self.quantities, |set, q| set.with(q));
+            if self.has_error() {
+                self.replicated = all.into_iter().fold(self.replicated, |set, q| set.with(q));
+            }
         }
         self
     }
 
+    /// The same with the error of Combined known, whether a pass shows it or not.
+    pub fn with_error(mut self) -> Self {
+        self.quantities = self.quantities.with(Quantity::Combined);
+        self.replicated = self.replicated.with(Quantity::Combined);
+        self
+    }
+
+    /// True where the error of Combined is known.
+    pub fn has_error(&self) -> bool {
+        self.replicated.contains(Quantity::Combined)
+    }
+
+    /// What the film keeps for each replicate, too.
+    pub(super) fn replicated(&self) -> Quantities {
+        self.replicated
+    }
+
+    /// The place of sample `index` of a pixel in the sampler's sequences: errors have them dealt over several.
+    pub fn sequence_place(&self, index: u32) -> u64 {
+        if self.replicated == Quantities::default() { u64::from(index) } else { place(index) }
+    }
+
     fn from_choices(choices: Vec<Choice>, groups: Vec<Arc<str>>, aovs: Vec<Aov>) -> Self {
         let asked = PASSES.iter().zip(&choices).filter(|(_, choice)| **choice != Choice::Nothing);
-        let quantities = asked.flat_map(|(pass, _)| pass.needs).fold(Quantities::default(), |set, &q| set.with(q));
-        Self { choices, groups, aovs, quantities }
+        let of = |errors: bool| {
+            let some = asked.clone().filter(|(pass, _)| pass.is_error() || !errors);
+            some.flat_map(|(pass, _)| pass.needs).fold(Quantities::default(), |set, &q| set.with(q))
+        };
+        let (quantities, replicated) = (of(false), of(true));
+        Self { choices, groups, aovs, quantities, replicated }
     }
 
     /// The passes, in the order of [`PASSES`]; of rows of groups those of [`PassSet::groups`], of the row of AOVs

@@ -10,6 +10,7 @@ use super::chosen::Chosen;
 use super::pass::Develop;
 use super::pass_set::PassSet;
 use super::picture::{Layer, Picture};
+use super::replicates::Replicates;
 use super::tile::{Layout, NonFinite, Tile};
 
 /// What a render accumulates.
@@ -37,8 +38,12 @@ impl Film {
 
     /// Memory that a film of this size needs for its sums, in bytes.
     pub fn bytes_needed(width: u32, height: u32, passes: &PassSet) -> u64 {
-        let stride = Layout::of(passes).stride as u64;
-        u64::from(width) * u64::from(height) * (8 * stride + 4)
+        let layout = Layout::of(passes);
+        let replicates = match layout.replicated.len() {
+            0 => 0,
+            numbers => Replicates::bytes_per_pixel(numbers) as u64,
+        };
+        u64::from(width) * u64::from(height) * (8 * layout.stride as u64 + 4 + replicates)
     }
 
     /// Pixels per row.
@@ -99,6 +104,8 @@ impl Film {
         let size = self.width as usize * self.height as usize * n;
         let empty = |name| Layer { name, channels: channels.clone(), data: vec![0.0; size], storage: pass.storage };
         let mut layers: Vec<Layer> = chosen.layers().into_iter().map(empty).collect();
+        let trust = matches!(pass.develop, Develop::Trust).then(|| self.trust());
+        let mut rest = Vec::new();
         for tile in &self.tiles {
             for (x, y) in tile.pixels() {
                 let at = (y as usize * self.width as usize + x as usize) * n;
@@ -106,6 +113,17 @@ impl Film {
                     Develop::Pixel(value) => {
                         let value = value(&tile.sums(x, y, chosen)).map(to_f32);
                         layers[0].data[at..at + n].copy_from_slice(&value[..n]);
+                    }
+                    Develop::Error(value) => {
+                        // Where nothing is known yet, as where there is no error, it is 0.
+                        let Some(pseudo) = tile.pseudo_values(x, y, value, &mut rest) else { continue };
+                        for (c, error) in layers[0].data[at..at + n].iter_mut().enumerate() {
+                            *error = to_f32(pseudo.variance(c).sqrt());
+                        }
+                    }
+                    Develop::Trust => {
+                        let trusted = trust.as_ref().is_some_and(|trust| trust[at]);
+                        layers[0].data[at] = if trusted { 1.0 } else { 0.0 };
                     }
                     Develop::Cryptomatte(kind) => {
                         let Some(matte) = tile.matte(kind, x, y) else { continue };

@@ -9,6 +9,7 @@ use super::cryptomatte::{CryptoKind, Matte};
 use super::pass::Means;
 use super::pass_set::PassSet;
 use super::quantity::{Quantities, Quantity};
+use super::replicates::{PseudoValues, Replicates};
 use super::sample::{FirstHit, PixelSample};
 use crate::math::Rgb;
 
@@ -66,6 +67,8 @@ pub(super) struct Layout {
     groups: Vec<Slots>,
     /// First number of the AOVs, and where each ends.
     aovs: (usize, Vec<usize>),
+    /// Numbers that are kept for each replicate, too, ascending; colors of one quantity follow each other.
+    pub(super) replicated: Arc<[u32]>,
     /// Numbers per pixel.
     pub(super) stride: usize,
 }
@@ -111,7 +114,10 @@ impl Layout {
             stride
         };
         let aovs = (first, passes.aovs().iter().map(end).collect());
-        Self { all, groups, aovs, stride }
+        // Errors are those of colors: alpha and coverage have none.
+        let colors = passes.replicated().iter().map(|q| (q, all.offsets[q as usize])).filter(|(q, _)| q.width() >= 3);
+        let replicated = colors.flat_map(|(_, start)| start..start + 3).collect();
+        Self { all, groups, aovs, replicated, stride }
     }
 }
 
@@ -131,6 +137,8 @@ pub struct Tile {
     first_hits: Vec<FirstHit>,
     /// Per pixel, per kind; empty where no pass needs it.
     mattes: [Vec<Matte>; 3],
+    /// Where errors are asked for.
+    replicates: Option<Replicates>,
     non_finite: NonFinite,
 }
 
@@ -148,6 +156,7 @@ impl Tile {
             width,
             height,
             sums: vec![0.0; pixels * layout.stride],
+            replicates: (!layout.replicated.is_empty()).then(|| Replicates::new(pixels, layout.replicated.clone())),
             layout,
             counts: vec![0; pixels],
             first_hits: vec![FirstHit::BACKGROUND; first_hits],
@@ -202,6 +211,9 @@ impl Tile {
             add(&mut sums[start..], &[r, g, b]);
         }
         add(&mut sums[self.layout.aovs.0..], &sample.aovs);
+        if let Some(replicates) = &mut self.replicates {
+            replicates.add(pixel, id.index, weight, values);
+        }
         if crypto {
             let ids = [sample.crypto.object, sample.crypto.material, sample.crypto.asset];
             for (mattes, id) in self.mattes.iter_mut().zip(ids) {
@@ -250,6 +262,40 @@ impl Tile {
         }
     }
 
+    /// What the replicates of a pixel say about `value`, of the sums that are kept once; `None` where there are none,
+    /// or too few samples in them. `rest` is scratch.
+    pub(super) fn pseudo_values(
+        &self,
+        x: u32,
+        y: u32,
+        value: fn(&Means<'_>) -> [f64; 4],
+        rest: &mut Vec<f64>,
+    ) -> Option<PseudoValues> {
+        let pixel = self.index(x, y);
+        let sums = &self.sums[pixel * self.layout.stride..][..self.layout.stride];
+        self.replicates.as_ref()?.pseudo_values(pixel, sums, rest, |sums, count| value(&self.means(sums, count)))
+    }
+
+    /// `value` of the sums that are kept once.
+    pub(super) fn value(&self, x: u32, y: u32, value: fn(&Means<'_>) -> [f64; 4]) -> [f64; 4] {
+        let pixel = self.index(x, y);
+        let sums = &self.sums[pixel * self.layout.stride..][..self.layout.stride];
+        value(&self.means(sums, self.counts[pixel]))
+    }
+
+    /// Those sums, as passes that are neither of groups nor AOVs see them.
+    fn means<'a>(&'a self, sums: &'a [f64], count: u32) -> Means<'a> {
+        let (first_hit, has_catchers) =
+            (FirstHit::BACKGROUND, self.layout.all.quantities.contains(Quantity::CatcherShare));
+        Means { sums, offsets: &self.layout.all.offsets, aov: &[], count, first_hit, has_catchers }
+    }
+
+    /// The largest color that a sample brought to a pixel, the mean of its channels times the filter's weight; 0
+    /// where no errors are asked for.
+    pub(super) fn largest(&self, x: u32, y: u32) -> f32 {
+        self.replicates.as_ref().map_or(0.0, |replicates| replicates.largest(self.index(x, y)))
+    }
+
     pub(super) fn matte(&self, kind: CryptoKind, x: u32, y: u32) -> Option<&Matte> {
         self.mattes[kind as usize].get(self.index(x, y))
     }
@@ -264,6 +310,7 @@ impl Tile {
             + self.counts.len() * size_of::<u32>()
             + self.first_hits.len() * size_of::<FirstHit>()
             + mattes.iter().sum::<usize>()
+            + self.replicates.as_ref().map_or(0, Replicates::bytes)
     }
 
     fn index(&self, x: u32, y: u32) -> usize {

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::film::SampleId;
 use crate::film::cryptomatte::Manifest;
+use crate::film::{Accuracy, Doubt, Figure, SampleId};
 
 /// Written into the header of the EXR file's first part. Names follow what others read: `software`,
 /// `owner`, `comments`, `capDate`, `utcOffset` of the OpenEXR standard; `File`, `Camera`, `Frame`,
@@ -22,6 +22,8 @@ pub struct Metadata {
     pub seed: u64,
     /// Wall-clock time of the render, in seconds.
     pub seconds: f64,
+    /// The picture's errors, where they were asked for.
+    pub accuracy: Option<Accuracy>,
     /// When the render ended; `None` leaves the date out.
     pub date: Option<SystemTime>,
     /// Samples that were dropped as not finite.
@@ -58,6 +60,11 @@ impl Metadata {
         add("penumbra/samples", self.samples.to_string());
         add("penumbra/seed", self.seed.to_string());
         add("penumbra/seconds", format!("{:.3}", self.seconds));
+        if let Some(Accuracy { rmse, rel_mse, display }) = self.accuracy {
+            for (name, figure) in [("display", display), ("rmse", rmse), ("rel_mse", rel_mse)] {
+                add(&format!("penumbra/error/{name}"), error(figure));
+            }
+        }
         add("penumbra/non_finite", self.non_finite.to_string());
         if let Some(SampleId { x, y, index }) = self.non_finite_first {
             add("penumbra/non_finite_first", format!("{x},{y},{index}"));
@@ -78,6 +85,14 @@ impl Metadata {
         let (year, month, day) = civil(days);
         let (h, m, s) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
         Some(format!("{year:04}:{month:02}:{day:02} {h:02}:{m:02}:{s:02}"))
+    }
+}
+
+/// Value and both ends of its 95 % interval, or why there is none.
+fn error(figure: Result<Figure, Doubt>) -> String {
+    match figure {
+        Ok(Figure { value, low, high }) => format!("{value:.4e} {low:.4e} {high:.4e}"),
+        Err(doubt) => format!("not estimable yet: {doubt}"),
     }
 }
 

@@ -113,6 +113,11 @@ fn progress_dict<'py>(py: Python<'py>, progress: &Progress) -> PyResult<Bound<'p
     dict.set_item("target_spp", progress.target_spp)?;
     dict.set_item("elapsed", progress.elapsed.as_secs_f64())?;
     dict.set_item("remaining", progress.remaining.map(|left| left.as_secs_f64()))?;
+    let outlook = progress.outlook;
+    dict.set_item("error", outlook.and_then(|outlook| outlook.error))?;
+    dict.set_item("error_at_end", outlook.and_then(|outlook| outlook.at_end))?;
+    dict.set_item("error_target", outlook.and_then(|outlook| outlook.target))?;
+    dict.set_item("to_target", progress.to_target())?;
     Ok(dict)
 }
 

@@ -62,6 +62,13 @@ impl Picture {
         self.metadata.seconds
     }
 
+    /// The picture's noise in units of the display's range: the estimate and both ends of its 95 % interval; None
+    /// where it was not asked for, or is not estimable yet.
+    #[getter]
+    fn error(&self) -> Option<(f64, f64, f64)> {
+        self.metadata.accuracy?.display.ok().map(|figure| (figure.value, figure.low, figure.high))
+    }
+
     /// Name of the camera.
     #[getter]
     fn camera(&self) -> &str {

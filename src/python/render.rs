@@ -12,7 +12,7 @@ use super::job::{Watch, run};
 use super::picture::Picture;
 use super::scene::Scene;
 use crate::desc::SceneDesc;
-use crate::error::{Result, Warnings};
+use crate::error::{Place, Result, Warnings};
 use crate::import::{self, ImportOptions};
 use crate::job;
 use crate::render::render as trace;
@@ -29,8 +29,8 @@ enum Source<'py> {
 ///
 /// Settings are keyword arguments with the names of the command line (spp, time, passes, …); passes may
 /// be a list. `observer(progress)` is called on this thread at least 20 times a second with a dict of
-/// done, spp, target_spp, elapsed and remaining (or None where nothing is new), and stops the render by
-/// a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
+/// done, spp, target_spp, elapsed, remaining, error, error_at_end, error_target and to_target (or None where
+/// nothing is new), and stops the render by a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
 #[pyfunction]
 #[pyo3(signature = (scene, *, camera=None, size=None, frame=None, subdivision=2, variants=Vec::new(),
     observer=None, on_picture=None, picture_interval=1.0, **settings))]
@@ -71,6 +71,9 @@ pub fn render(
         let prepared = prepare(desc, &view, &settings)?;
         warnings.extend(prepared.warnings.clone());
         let rendered = trace(&prepared.scene, &settings, mailbox)?;
+        for what in job::shortfalls(&rendered, &settings) {
+            warnings.push(&Place::default(), what);
+        }
         let metadata = job::metadata(name, frame, &prepared, &rendered, &settings, &warnings);
         Ok(Picture { picture: rendered.film.develop(), metadata, half, interrupted: rendered.interrupted })
     })
@@ -99,9 +102,8 @@ pub(super) fn settings_of(given: Option<&Bound<'_, PyDict>>) -> PyResult<(Settin
         passes |= name == "passes";
         spp |= name == "spp";
     }
-    // Alone, the time is the rule.
-    if settings.time.is_some() && !spp {
-        settings.spp = Settings::NO_LIMIT;
+    if !spp {
+        settings.without_spp();
     }
     Ok((settings, passes))
 }

@@ -88,6 +88,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
 
     let passes = settings.passes.resolve(&light_groups(&desc), &aovs::declared(&desc));
     let passes = passes.map_err(|what| Error::invalid(&desc.place, what))?;
+    let passes = if settings.needs_error() { passes.with_error() } else { passes };
     aovs::keep(&mut desc, passes.aovs());
     let catchers = desc.instances.iter().any(|instance| instance.catcher);
     let passes = if catchers { passes.with_catchers() } else { passes };

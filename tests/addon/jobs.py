@@ -246,6 +246,32 @@ def cancel(folder):
     return [time.perf_counter() - asked["at"], path]
 
 
+def noise_target(folder):
+    """A picture that ends at a noise target, with noisy pixels sampled more; what was told on the way, and its path."""
+    from bl_ext.user_default.penumbra import engine
+
+    scene = _scene((64, 48), spp=4096)
+    _room()
+    scene.penumbra.error, scene.penumbra.adaptive = 0.01, True
+    layer = bpy.context.view_layer
+    layer.penumbra.use_pass_error = layer.penumbra.use_pass_sample_count = True
+    kind = engine.PenumbraRenderEngine
+    told, observe = [], kind._observe
+
+    def listen(self, progress):
+        if progress is not None:
+            told.append(engine._noise(progress))
+        return observe(self, progress)
+
+    kind._observe = listen
+    path = os.path.join(folder, "noise.exr")
+    try:
+        _render(path)
+    finally:
+        kind._observe = observe
+    return [told, path]
+
+
 def animation(folder):
     """Three frames of a cube that moves."""
     scene = _scene(spp=4)

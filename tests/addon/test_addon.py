@@ -119,6 +119,18 @@ def test_a_stopped_render_keeps_its_picture(blender, tmp_path):
     assert layers["ViewLayer.Combined.R"].mean() > 0.01
 
 
+def test_a_noise_target_ends_a_render(blender, tmp_path):
+    (told, path), output = blender.run("noise_target", tmp_path)
+    layers = read(path)
+    counts = layers["ViewLayer.Debug Sample Count.X"]
+    assert 16 <= counts.min() < counts.max() and counts.mean() < 4096
+    combined = np.dstack([layers[f"ViewLayer.Combined.{c}"] for c in "RGB"])
+    error = np.dstack([layers[f"ViewLayer.Error.{c}"] for c in "RGB"])
+    assert (error > 0).any() and error.mean() < 0.05 * combined.mean()
+    assert told[-1].startswith("Noise 0.00") and " 0.01 in " in told[-1], told
+    assert "was not reached" not in output
+
+
 def test_an_animation_has_its_frames(blender, tmp_path):
     frames, _ = blender.run("animation", tmp_path)
     assert frames == ["frame-0001.png", "frame-0002.png", "frame-0003.png"]

@@ -22,7 +22,9 @@ fn lists_are_parsed() {
     assert_eq!(names(&set("shadow")), ["shadow"]);
     let aov = Aov { name: "wet".into(), kind: AovKind::Value };
     let all = set("ao,all").resolve(&groups(&["key"]), &[aov]).expect("there");
-    assert_eq!(names(&all).len(), PASSES.len());
+    assert_eq!(names(&all).len(), PASSES.iter().filter(|pass| !pass.is_error()).count());
+    let more = set("all,error_ao").resolve(&[], &[]).expect("there");
+    assert!(names(&more).contains(&"error_ao".to_owned()) && names(&more).contains(&"shadow".to_owned()));
     assert_eq!(PassSet::default(), set("combined"));
 }
 
@@ -40,6 +42,23 @@ fn an_unknown_pass_is_told_with_the_known() {
     let message = PassSet::parse("ao,shadows").expect_err("unknown");
     assert!(message.contains("'shadows'") && message.contains("shadow,") && message.contains("crypto_asset"));
     assert!(PassSet::parse("shadow_").expect_err("no group").contains("shadow_<group>"));
+}
+
+#[test]
+fn samples_are_dealt_only_where_an_error_is_asked_for() {
+    use crate::film::Quantity;
+    for list in ["combined,ao,shadow,sample_count", "all"] {
+        let plain = set(list);
+        assert!(!plain.has_error() && plain.sequence_place(9) == 9, "{list}");
+    }
+    for list in ["error", "error_ao", "error_shadow", "error_trust"] {
+        assert_eq!(set(list).sequence_place(9), 1 << 32 | 1, "{list}");
+    }
+    assert!(set("error").has_error() && set("error_trust").has_error() && !set("error_ao").has_error());
+    let asked = set("ao").with_error();
+    assert!(asked.has_error() && asked.needs(Quantity::Combined) && names(&asked) == ["ao"]);
+    assert!(set("error").with_catchers().replicated().contains(Quantity::CatcherLit));
+    assert!(!set("combined").with_catchers().replicated().contains(Quantity::CatcherLit));
 }
 
 #[test]

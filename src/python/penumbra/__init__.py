@@ -27,10 +27,11 @@ def render(scene, **keywords):
     size : (width, height) in pixels
     frame : time code of USD, frame of glTF
     passes : names of passes, a list or one text with commas
-    spp, time, seed, max_bounces, ... : every row of `settings()`
+    spp, error, time, seed, max_bounces, ... : every row of `settings()`
     subdivision, variants : as on the command line
-    observer : called with a dict (done, spp, target_spp, elapsed, remaining) or None at least 20
-        times a second; a true answer stops the render, and the picture so far is returned
+    observer : called with a dict (done, spp, target_spp, elapsed, remaining; error, error_at_end,
+        error_target, to_target where an error is asked for, else None) or None at least 20 times
+        a second; a true answer stops the render, and the picture so far is returned
     on_picture, picture_interval : called with the Picture so far every so many seconds
 
     Raises ValueError for broken input, OSError for files that can't be read, NotImplementedError

@@ -13,6 +13,10 @@ class Progress(TypedDict):
     target_spp: int | None
     elapsed: float
     remaining: float | None
+    error: float | None
+    error_at_end: float | None
+    error_target: float | None
+    to_target: list[float] | None
 
 class Picture:
     width: int
@@ -20,6 +24,7 @@ class Picture:
     layers: list[str]
     spp: float
     seconds: float
+    error: tuple[float, float, float] | None
     camera: str
     warnings: list[str]
     interrupted: bool
