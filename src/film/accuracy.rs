@@ -67,7 +67,7 @@ impl std::fmt::Display for Doubt {
 pub struct Accuracy {
     /// Root of the mean squared error over pixels and channels.
     pub rmse: Result<Figure, Doubt>,
-    /// Mean of squared error / (value² + 0.01) over pixels and channels.
+    /// Mean of squared error / (value² + 0.01) over pixels and channels, the value being the median of 3 × 3 pixels.
     pub rel_mse: Result<Figure, Doubt>,
     /// Root mean square, over pixels and channels, of the error times the slope of the display's curve: 0.01 is a
     /// hundredth of the display's range.
@@ -166,28 +166,33 @@ impl PixelError {
 impl PixelErrors {
     /// The picture's numbers.
     pub fn accuracy(&self) -> Accuracy {
-        let display = self.figure(|x, y, _| {
+        let display = self.figure(|x, y| {
             let around = self.square(x, y, 1).map(|i| (self.pixels[i].luminance(), 1.0));
             let (sum, n) = around.fold((0.0, 0.0), |(sum, n), (l, one)| (sum + l, n + one));
             [display_slope(sum / n).powi(2); 3]
         });
-        let rel_mse = self.figure(|_, _, pixel| {
-            // Noise has a square of its own.
-            std::array::from_fn(|c| 1.0 / ((pixel.value[c].powi(2) - pixel.variance[c]).max(0.0) + DARK))
-        });
+        let rel_mse = self.figure(|x, y| std::array::from_fn(|c| 1.0 / (self.median(x, y, c).powi(2) + DARK)));
         let root = |figure: Result<Figure, Doubt>| {
             figure.map(|Figure { value, low, high }| Figure { value: value.sqrt(), low: low.sqrt(), high: high.sqrt() })
         };
-        Accuracy { rmse: root(self.figure(|_, _, _| [1.0; 3])), rel_mse, display: root(display) }
+        Accuracy { rmse: root(self.figure(|_, _| [1.0; 3])), rel_mse, display: root(display) }
+    }
+
+    /// Middle one of the values of a pixel and its neighbours: noise, and a bright sample most of all, would make a
+    /// pixel's own stand for more than it is.
+    fn median(&self, x: usize, y: usize, c: usize) -> f64 {
+        let mut values: Vec<f64> = self.square(x, y, 1).map(|i| self.pixels[i].value[c]).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
     /// Mean over pixels and channels of variance × weight.
-    fn figure(&self, weights: impl Fn(usize, usize, &PixelError) -> [f64; 3]) -> Result<Figure, Doubt> {
+    fn figure(&self, weights: impl Fn(usize, usize) -> [f64; 3]) -> Result<Figure, Doubt> {
         let k = REPLICATES as f64;
         let (mut sum, mut squared, mut plain) = (0.0, 0.0, 0.0);
         let mut parts = Vec::with_capacity(self.pixels.len());
         for (i, pixel) in self.pixels.iter().enumerate() {
-            let weights = weights(i % self.width, i / self.width, pixel);
+            let weights = weights(i % self.width, i / self.width);
             let part: f64 = weights.iter().zip(pixel.variance).map(|(weight, v)| weight * v).sum();
             parts.push(part);
             sum += part;
@@ -350,6 +355,12 @@ mod tests {
         }
         // 95 of 100, within three standard deviations.
         assert!(held.iter().all(|held| (88..=100).contains(held)), "{held:?}");
+    }
+
+    #[test]
+    fn a_bright_sample_weighs_no_less_for_its_own_brightness() {
+        let film = film(3, 16, |x, y| if (x, y) == (1, 1) { 100.0 } else { 0.5 });
+        assert_eq!(film.errors().expect("known").median(1, 1, 0), 0.5);
     }
 
     #[test]
