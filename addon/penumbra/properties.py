@@ -102,6 +102,9 @@ def settings(scene, view_layer):
     for name, theirs in _CYCLES.items():
         if hasattr(cycles, theirs):
             result[name] = getattr(cycles, theirs)
+    if bpy.app.version < (5, 0) and "transparent_bounces" in result:
+        # Measured: Cycles 4 passes one more than it says.
+        result["transparent_bounces"] += 1
     world = scene.world
     if world is not None and "ao_distance" not in result:
         result["ao_distance"] = world.light_settings.distance

@@ -66,10 +66,10 @@ impl Scene {
 
     /// Takes in the mesh `key`. Arrays are C-contiguous, float32 and int32: positions (n, 3),
     /// corner_verts (c), triangles (t, 3) of corners, normals (c, 3) or (n, 3), material_index per
-    /// polygon with triangle_polygons (t), uvs [(name, (c, 2))], colors [(name, (c or n, 4))],
+    /// polygon with triangle_polygons (t), uvs [(name, (c, 2))], colors and attributes [(name, (c or n, 4))],
     /// texture_space (middle, half of the size).
     #[pyo3(signature = (key, name, *, positions, corner_verts, triangles, normals=None, material_index=None,
-        triangle_polygons=None, uvs=Vec::new(), colors=Vec::new(),
+        triangle_polygons=None, uvs=Vec::new(), colors=Vec::new(), attributes=Vec::new(),
         texture_space=None))]
     fn set_mesh(
         &self,
@@ -84,6 +84,7 @@ impl Scene {
         triangle_polygons: Option<Ints<'_>>,
         uvs: Vec<Layer<'_>>,
         colors: Vec<Layer<'_>>,
+        attributes: Vec<Layer<'_>>,
         texture_space: Option<[[f64; 3]; 2]>,
     ) -> PyResult<()> {
         let arrays = MeshArrays {
@@ -95,8 +96,9 @@ impl Scene {
             triangle_polygons: triangle_polygons.as_ref().map_or(Ok(&[][..]), ints)?,
             texture_space,
         };
-        let (uvs, colors) = (layers(&uvs)?, layers(&colors)?);
-        py.detach(|| self.lock().set_mesh(key, name, &arrays, &uvs, &colors)).map_err(|error| exception(&error))
+        let (uvs, colors, attributes) = (layers(&uvs)?, layers(&colors)?, layers(&attributes)?);
+        py.detach(|| self.lock().set_mesh(key, name, &arrays, &uvs, [&colors, &attributes]))
+            .map_err(|error| exception(&error))
     }
 
     /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the

@@ -930,3 +930,53 @@ def uncorrected():
     """Bumps of a material without Bump Map Correction."""
     bumpy()
     bpy.data.materials["Waves"].cycles.use_bump_map_correction = False
+
+
+def attributes():
+    """What geometry nodes and scripts leave on a mesh, shown by Attribute nodes."""
+    room()
+    kinds = (("FLOAT", "POINT"), ("INT", "FACE"), ("BOOLEAN", "CORNER"), ("FLOAT_VECTOR", "POINT"), ("FLOAT2", "CORNER"),
+             ("FLOAT_COLOR", "FACE"), ("BYTE_COLOR", "POINT"), ("FLOAT", "CORNER"))
+    for i, (kind, domain) in enumerate(kinds):
+        location = (0.9 * (i % 4) - 1.35, -1.2 - 0.9 * (i // 4), 0.05)
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=0.8, location=location)
+        mesh = bpy.context.object.data
+        own = f"mine {i}"
+        values = mesh.attributes.new(own, kind, domain)
+        width = {"FLOAT_VECTOR": 3, "FLOAT2": 2, "FLOAT_COLOR": 4, "BYTE_COLOR": 4}.get(kind, 1)
+        name = {1: "value", 2: "vector", 3: "vector", 4: "color"}[width]
+        numbers = [0.1 + 0.8 * ((7 * k * k + 3 * k) % 11) / 11.0 for k in range(len(values.data) * width)]
+        cast = {"INT": lambda x: round(3.0 * x), "BOOLEAN": lambda x: x > 0.5}.get(kind, float)
+        values.data.foreach_set(name, [cast(x) for x in numbers])
+        for shown, output in ((own, "Color"), (own, "Fac"), ("position", "Vector"))[i % 3: i % 3 + 1]:
+            matter = material(f"Shown {i}", "ShaderNodeEmission")
+            tree = matter.node_tree
+            node = tree.nodes.new("ShaderNodeAttribute")
+            node.attribute_name = shown
+            shader = next(one for one in tree.nodes if one.type == "EMISSION")
+            tree.links.new(node.outputs[output], shader.inputs["Color"])
+            mesh.materials.append(matter)
+    lamp("SUN", rotation=(0.3, 0.2, 0.0), energy=1.0, angle=0.1)
+
+
+def overridden():
+    """A view layer with a material of its own for everything, and where Blender has it, a world."""
+    room()
+    bpy.ops.mesh.primitive_cube_add(size=0.8, location=(1.5, -1.0, 0.5))
+    layer = bpy.context.view_layer
+    layer.material_override = material("Override", "ShaderNodeBsdfDiffuse", Color=(0.9, 0.2, 0.1, 1.0))
+    world(0.5)
+    if hasattr(layer, "world_override"):
+        other = bpy.data.worlds.new("Other")
+        other.use_nodes = True
+        other.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.3, 0.9, 1.0)
+        layer.world_override = other
+    lamp("SUN", rotation=(0.3, 0.2, 0.0), energy=1.0, angle=0.1)
+
+
+def filtered():
+    """A view layer without the world."""
+    room()
+    world(1.0)
+    bpy.context.view_layer.use_sky = False
+    lamp("SUN", rotation=(0.3, 0.2, 0.0), energy=1.0, angle=0.1)

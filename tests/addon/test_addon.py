@@ -53,7 +53,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "leaf", "red_film", "glow", "filter_glossy", "no_caustics",
              "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
              "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
-             "uncorrected", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
+             "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
              "catcher", "hair", "hair_curves_bent", "particle_fur", "particle_instances"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):

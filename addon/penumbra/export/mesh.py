@@ -19,8 +19,8 @@ def positions(data):
     return np.empty(0, np.float32) if attribute is None else _array(attribute.data, "vector", 3, np.float32)
 
 
-def hand_over(scene, key, mesh):
-    """Gives the evaluated mesh to the engine's scene as mesh `key`."""
+def hand_over(scene, key, mesh, asked):
+    """Gives the evaluated mesh to the engine's scene as mesh `key`, with the attributes whose names are `asked` for."""
     mesh.calc_loop_triangles()
     triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
     arrays = {
@@ -37,7 +37,7 @@ def hand_over(scene, key, mesh):
     if slots is not None:
         arrays["material_index"] = _array(slots.data, "value", 1, np.int32)
         arrays["triangle_polygons"] = _array(mesh.loop_triangle_polygons, "value", 1, np.int32)
-    scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh),
+    scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh), attributes=_attributes(mesh, asked),
                    texture_space=[list(mesh.texspace_location), list(mesh.texspace_size)], **arrays)
 
 
@@ -61,3 +61,44 @@ def _colors(mesh):
     if 0 <= first < len(layers):
         layers.insert(0, layers.pop(first))
     return [(layer.name, _array(layer.data, "color", 4, np.float32)) for layer in layers]
+
+
+# Of a type of attributes, the property of its values, how many numbers they are, and what they are kept in.
+_TYPES = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int32),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+}
+
+
+def _attributes(mesh, asked):
+    """What the Attribute node finds beside UV maps and colour attributes, as four numbers for each point or corner."""
+    known = {layer.name for layer in (*mesh.uv_layers, *mesh.color_attributes)}
+    found = []
+    for name in sorted(asked - known):
+        attribute = mesh.attributes.get(name)
+        if attribute is None or attribute.data_type not in _TYPES or attribute.domain == "EDGE":
+            continue
+        values = _as_colors(attribute)
+        if attribute.domain == "FACE":
+            values = np.repeat(values, _array(mesh.polygons, "loop_total", 1, np.int32), axis=0)
+        found.append((name, np.ascontiguousarray(values).reshape(-1)))
+    return found
+
+
+def _as_colors(attribute):
+    """A number is a grey; what a vector lacks is 0."""
+    name, width, dtype = _TYPES[attribute.data_type]
+    values = _array(attribute.data, name, width, dtype).astype(np.float32).reshape(-1, width)
+    colors = np.ones((len(values), 4), np.float32)
+    colors[:, :3] = 0.0
+    if width == 1:
+        colors[:, :3] = values
+    else:
+        colors[:, :width] = values
+    return colors

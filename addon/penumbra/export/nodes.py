@@ -1,5 +1,7 @@
 """Node trees as plain data."""
 
+import bpy
+
 # What every node has: its place in the editor, not what it computes.
 _COMMON = {
     "rna_type", "type", "location", "location_absolute", "width", "height", "dimensions", "name", "label",
@@ -125,3 +127,11 @@ def _curves(mapping):
         "extend": mapping.extend == "EXTRAPOLATED",
         "curves": [[float(mapping.evaluate(curve, x)) for x in steps] for curve in mapping.curves],
     }
+
+
+def attributes_asked():
+    """Names of the geometry's attributes that some material asks for."""
+    trees = [material.node_tree for material in bpy.data.materials if material.node_tree is not None]
+    trees += [tree for tree in bpy.data.node_groups if tree.type == "SHADER"]
+    asked = (node for tree in trees for node in tree.nodes if node.type == "ATTRIBUTE")
+    return frozenset(node.attribute_name for node in asked if node.attribute_type == "GEOMETRY" and node.attribute_name)

@@ -31,6 +31,8 @@ class Exporter:
         # Keys of the materials that the engine has and that nothing but an edit of theirs makes others of.
         self._known_materials = set()
         self._moves = False
+        # Names of the attributes that Attribute nodes ask for.
+        self._asked = frozenset()
 
     def update(self, depsgraph, size, space):
         """Hands over what changed since the last time, for a viewport of `space`."""
@@ -47,7 +49,7 @@ class Exporter:
         if update.is_updated_geometry:
             data = edited.data if isinstance(edited, bpy.types.Object) else edited
             if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
-                self._meshes.discard(_key(data))
+                self._meshes.discard(_key(data, self._asked))
             if isinstance(edited, bpy.types.Object):
                 self._meshes -= self._hair.pop(edited.name_full, set())
         if isinstance(edited, bpy.types.Material):
@@ -69,6 +71,9 @@ class Exporter:
         """
         self._motion = motion
         self._layer = depsgraph.view_layer
+        override = self._layer.material_override
+        self._override = override and override.evaluated_get(depsgraph)
+        self._asked = nodes.attributes_asked()
         self._render = depsgraph.mode == "RENDER"
         self._materials, self._material_index = [], {}
         self._objects, self._object_index = [], {}
@@ -88,9 +93,9 @@ class Exporter:
                 self._links.append((self._lights[-1], obj))
                 if motion is not None:
                     lamps[identity_of(instance)] = self._lights[-1]
-            elif instance.show_self and (obj.type in _MESHES or obj.type in _ROUNDS):
+            elif instance.show_self and self._is_rendered(obj):
                 found += self._object(obj)
-            if instance.show_particles and obj.type == "MESH" and obj.particle_systems:
+            if self._layer.use_strand and instance.show_particles and obj.type == "MESH" and obj.particle_systems:
                 found += self._strands(instance.instance_object if instance.is_instance else obj)
             matrix = [x for row in instance.matrix_world for x in row] if found else None
             if motion is not None:
@@ -113,7 +118,7 @@ class Exporter:
                 "aovs": [[aov.name, aov.type] for aov in passes.aovs(depsgraph.view_layer)],
             },
             "camera": camera.camera(through),
-            "world": lights.world(scene.world, self),
+            "world": lights.world(self._world(scene), self),
             "lights": self._lights,
             "images": self.images,
             "objects": self._objects,
@@ -131,6 +136,19 @@ class Exporter:
         if motion is not None:
             motion.hand_over(self.scene)
             self.warnings += sorted(motion.warnings)
+
+    def _is_rendered(self, obj):
+        """True for what has a shape that the view layer's filter lets through."""
+        if obj.type == "CURVES":
+            return self._layer.use_strand
+        return (obj.type in _MESHES or obj.type in _ROUNDS) and self._layer.use_solid
+
+    def _world(self, scene):
+        """The view layer's own world, the scene's, or none."""
+        if not self._layer.use_sky:
+            return None
+        override = getattr(self._layer, "world_override", None)
+        return scene.world if override is None else override
 
     def _json(self, document):
         """The document as JSON, which has no NaN and no infinity."""
@@ -182,6 +200,8 @@ class Exporter:
 
     def _record(self, obj, shape, materials):
         """Says of an object with one of its shapes what it is; returns the record's index."""
+        if self._override is not None:
+            materials = [self._override] * max(len(materials), 1)
         top = obj
         while top.parent is not None:
             top = top.parent
@@ -204,7 +224,7 @@ class Exporter:
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
         own = obj.type == "MESH" or obj.type in _ROUNDS
-        key = _key(obj.data)
+        key = _key(obj.data, self._asked)
         self._used.add(key)
         if key in self._meshes:
             return key
@@ -216,7 +236,7 @@ class Exporter:
             elif data is None or not data.polygons:
                 return None
             else:
-                mesh.hand_over(self.scene, key, data)
+                mesh.hand_over(self.scene, key, data, self._asked)
         except ValueError as error:
             self.warnings.append(f"{obj.name}: {error}; it is left out")
             return None
@@ -309,9 +329,11 @@ class Exporter:
         return [list(map(float, row)) for row in obj.matrix_world]
 
 
-def _key(data):
-    """A number for a data-block: its address, which may be that of another one before, and what it holds."""
-    counts = (len(data.vertices), len(data.loops)) if isinstance(data, bpy.types.Mesh) else ()
+def _key(data, asked):
+    """A number for a data-block: its address, which may be that of another one before, and what it holds; of a mesh
+    the attributes that are `asked` for, too.
+    """
+    counts = (len(data.vertices), len(data.loops), *sorted(asked)) if isinstance(data, bpy.types.Mesh) else ()
     if isinstance(data, (bpy.types.Curves, bpy.types.PointCloud)):
         counts = (len(data.points),)
     return hash((data.as_pointer(), data.name_full, *counts)) & _KEY

@@ -127,7 +127,7 @@ impl NamedMesh {
     }
 }
 
-/// The mesh of `arrays`, with UV maps and colour attributes.
+/// The mesh of `arrays`, with UV maps, colour attributes, and other attributes as colors, too.
 ///
 /// # Errors
 /// Arrays whose lengths or indices don't fit together. Vertices that are not finite are told, and
@@ -137,7 +137,7 @@ pub fn mesh(
     place: &Place,
     arrays: &MeshArrays<'_>,
     uvs: &[LayerArray<'_>],
-    colors: &[LayerArray<'_>],
+    [colors, others]: [&[LayerArray<'_>]; 2],
     warnings: &mut Warnings,
 ) -> Result<NamedMesh> {
     let broken = |what: String| Error::invalid(place, format!("the mesh \"{name}\" {what}"));
@@ -177,6 +177,11 @@ pub fn mesh(
             attributes.push(NamedAttribute { name: "".into(), values: values.clone() });
         }
         attributes.push(NamedAttribute { name: color.name.into(), values });
+    }
+    for other in others {
+        if let Some(values) = layer.fit(&format!("attribute \"{}\"", other.name), other.values, warnings) {
+            attributes.push(NamedAttribute { name: other.name.into(), values });
+        }
     }
     let generated = arrays.texture_space.map(|[middle, half]| {
         let corner = |sign: f64| std::array::from_fn(|i| middle[i] + sign * half[i]);
@@ -303,7 +308,7 @@ mod tests {
 
     fn built(arrays: &MeshArrays<'_>, uvs: &[LayerArray<'_>]) -> (Result<NamedMesh>, Vec<String>) {
         let mut warnings = Warnings::new();
-        let mesh = mesh("quad", &Place::default(), arrays, uvs, &[], &mut warnings);
+        let mesh = mesh("quad", &Place::default(), arrays, uvs, [&[], &[]], &mut warnings);
         (mesh, warnings.iter().map(|w| w.what.clone()).collect())
     }
 

@@ -96,11 +96,11 @@ impl BlenderScene {
         name: &str,
         arrays: &MeshArrays<'_>,
         uvs: &[LayerArray<'_>],
-        colors: &[LayerArray<'_>],
+        values: [&[LayerArray<'_>]; 2],
     ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let mesh = mesh::mesh(name, &self.place(), arrays, uvs, colors, &mut warnings)?;
+        let mesh = mesh::mesh(name, &self.place(), arrays, uvs, values, &mut warnings)?;
         self.meshes.insert(key, mesh);
         self.of_shapes.insert(key, warnings);
         Ok(())

@@ -54,6 +54,7 @@ class Scene:
         triangle_polygons: NDArray[np.int32] | None = None,
         uvs: Sequence[tuple[str, NDArray[np.float32]]] = ...,
         colors: Sequence[tuple[str, NDArray[np.float32]]] = ...,
+        attributes: Sequence[tuple[str, NDArray[np.float32]]] = ...,
         texture_space: Sequence[Sequence[float]] | None = None,
     ) -> None: ...
     def set_rounds(

@@ -66,10 +66,19 @@ pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId
 
 /// Attribute.
 pub fn attribute<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
-    let name = at.node.text("attribute_name");
-    if at.node.text("attribute_type") == "GEOMETRY" && flow.uv_sets.set(name).is_some() && !name.is_empty() {
+    let (name, of) = (at.node.text("attribute_name"), at.node.text("attribute_type"));
+    if of != "GEOMETRY" {
+        flow.warn(format!("the attribute \"{name}\" is one of {of}, which is not supported; 0 is taken for it"));
+        return flow.graph.constant([0.0; 4]);
+    }
+    if flow.uv_sets.set(name).is_some() && !name.is_empty() {
         let uv = uv_set(flow, name);
-        return if output == "Fac" { flow.graph.average(uv) } else { uv };
+        return match output {
+            // Of two numbers it is the first one, of three or four their mean.
+            "Fac" => flow.graph.place(uv, 0),
+            "Alpha" => flow.graph.number(1.0),
+            _ => uv,
+        };
     }
     let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0; 4] });
     match output {
