@@ -9,13 +9,13 @@ _ENGINE = "PENUMBRA"
 # Panels of Blender's own engines that mean nothing here.
 _EXCLUDED = {
     "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "RENDER_PT_simplify_render", "RENDER_PT_simplify_greasepencil",
-    "VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes",
+    "VIEWLAYER_PT_layer_passes",
 }
 # Those in whose place Cycles has one with more.
 _REPLACED = {
     "DATA_PT_camera_dof", "DATA_PT_falloff_curve", "DATA_PT_light", "DATA_PT_preview", "DATA_PT_spot",
     "MATERIAL_PT_context_material", "MATERIAL_PT_preview", "NODE_DATA_PT_light", "NODE_DATA_PT_spot",
-    "OBJECT_PT_visibility",
+    "OBJECT_PT_visibility", "VIEWLAYER_PT_filter",
 }
 # Panels of Cycles, whatever of them a version of Blender has.
 _OF_CYCLES = {
@@ -28,6 +28,7 @@ _OF_CYCLES = {
     "OBJECT_PT_shadow_terminator", "CYCLES_OBJECT_PT_shading_shadow_terminator",
     "CYCLES_OBJECT_PT_motion_blur", "CYCLES_OBJECT_PT_shading", "CYCLES_OBJECT_PT_lightgroup", "CYCLES_OBJECT_PT_light_linking",
     "CYCLES_OBJECT_PT_shadow_linking", "CYCLES_OBJECT_PT_visibility", "CYCLES_OBJECT_PT_visibility_ray_visibility",
+    "CYCLES_RENDER_PT_filter", "CYCLES_RENDER_PT_override", "VIEWLAYER_PT_override",
     "CYCLES_CAMERA_PT_dof", "CYCLES_CAMERA_PT_dof_aperture", "CYCLES_CAMERA_PT_lens_custom_parameters",
 }
 # What each panel had by itself, under the names that a loan changes.

@@ -3,6 +3,7 @@
 import math
 
 import bpy
+from mathutils import Matrix
 
 
 def add(name, data, **properties):
@@ -941,6 +942,9 @@ def attributes():
         location = (0.9 * (i % 4) - 1.35, -1.2 - 0.9 * (i // 4), 0.05)
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=0.8, location=location)
         mesh = bpy.context.object.data
+        # Positions that are colors.
+        mesh.transform(Matrix.Translation((0.5, 0.5, 0.0)))
+        bpy.context.object.location = [x - shift for x, shift in zip(location, (0.5, 0.5, 0.0))]
         own = f"mine {i}"
         values = mesh.attributes.new(own, kind, domain)
         width = {"FLOAT_VECTOR": 3, "FLOAT2": 2, "FLOAT_COLOR": 4, "BYTE_COLOR": 4}.get(kind, 1)
