@@ -57,7 +57,8 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         clashing = [
             f'the shader AOV "{name}" is left out: another pass has its name' for name in passes.clashing(view_layer)
         ]
-        self._tell([*libraries.missing(), *clashing, *exporter.warnings])
+        missing = [f"the pass {name} is not rendered yet; it is left out" for name in passes.missing(view_layer)]
+        self._tell([*libraries.missing(), *clashing, *missing, *exporter.warnings])
         if self.test_break():
             return
 

@@ -27,6 +27,14 @@ for _lobe in ("diffuse", "glossy", "transmission"):
     for _part in ("direct", "indirect", "color"):
         _BOXES[f"{_lobe}_{_part}"] = f"use_pass_{_lobe}_{_part}"
 
+# Those that there is no pass for, by name.
+_MISSING = {"Mist": "use_pass_mist", "Vector": "use_pass_vector"}
+_MISSING_OF_CYCLES = {
+    "Shadow Catcher": "use_pass_shadow_catcher",
+    "Volume Direct": "use_pass_volume_direct",
+    "Volume Indirect": "use_pass_volume_indirect",
+}
+
 _TYPES = {"X": "VALUE", "Z": "VALUE", "XYZ": "VECTOR", "XYZW": "VECTOR", "UVA": "VECTOR"}
 
 
@@ -71,6 +79,13 @@ def clashing(view_layer):
     """Names of those that can't."""
     usable = {aov.name for aov in aovs(view_layer)}
     return [aov.name for aov in view_layer.aovs if aov.name not in usable]
+
+
+def missing(view_layer):
+    """Names of the passes of Blender and Cycles that the view layer asks for and the engine does not have."""
+    cycles = getattr(view_layer, "cycles", None)
+    asked = [name for name, box in _MISSING.items() if not is_known(box) and getattr(view_layer, box, False)]
+    return asked + [name for name, box in _MISSING_OF_CYCLES.items() if getattr(cycles, box, False)]
 
 
 def _layers_of_engine(view_layer):

@@ -311,6 +311,24 @@ def empty_border(folder):
     return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
 
 
+def left_out(folder):
+    """What a scene may ask for that there is not yet, each told."""
+    scene = _scene()
+    layer = bpy.context.view_layer
+    layer.use_pass_mist = layer.cycles.use_pass_shadow_catcher = True
+    material = bpy.data.materials.new("Displaced")
+    material.use_nodes = True
+    tree = material.node_tree
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+    tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
+    of_object = tree.nodes.new("ShaderNodeAttribute")
+    of_object.attribute_type, of_object.attribute_name = "OBJECT", "mine"
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    tree.links.new(of_object.outputs["Color"], shader.inputs["Base Color"])
+    next(obj for obj in scene.objects if obj.type == "MESH").data.materials.append(material)
+    _render(os.path.join(folder, "left_out.exr"))
+
+
 def empty_scene(folder):
     """Nothing but a camera: the world alone."""
     _scene()

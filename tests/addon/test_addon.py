@@ -131,6 +131,13 @@ def test_a_noise_target_ends_a_render(blender, tmp_path):
     assert "was not reached" not in output
 
 
+def test_what_is_left_out_is_told(blender, tmp_path):
+    _, output = blender.run("left_out", tmp_path)
+    for words in ("the pass Mist is not rendered", "the pass Shadow Catcher is not rendered",
+                  "displacement is not rendered", 'the attribute "mine" is one of OBJECT'):
+        assert words in output, words
+
+
 def test_an_animation_has_its_frames(blender, tmp_path):
     frames, _ = blender.run("animation", tmp_path)
     assert frames == ["frame-0001.png", "frame-0002.png", "frame-0003.png"]

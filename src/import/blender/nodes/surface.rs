@@ -32,6 +32,9 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
         Some((output, input)) => closure::parts(flow, output, input),
         None => Vec::new(),
     };
+    if output.is_some_and(|output| flow.is_linked(output, "Displacement")) {
+        flow.warn("displacement is not rendered yet: the surface stays where it is");
+    }
     let inside = output.and_then(|output| volume::volume(flow, output));
     // A volume alone: nothing is at its boundary.
     let bare = inside.is_some() && output.is_some_and(|output| !flow.is_linked(output, "Surface"));
