@@ -1,11 +1,12 @@
 //! Images: files, packed bytes and pixels in memory, decoded once each and all at a time.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::colors::Space;
 use super::document::ImageData;
 use super::kept::{KeptImages, Version};
 use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
@@ -133,23 +134,35 @@ impl<'a> Images<'a> {
                 })
             })
             .collect();
+        self.tell_spaces(warnings);
         (images, self.textures)
+    }
+
+    /// Tells the images whose colour space is not known, each once however many tiles it has.
+    fn tell_spaces(&self, warnings: &mut Warnings) {
+        let unknown = |name: &&String| Space::named(&self.data[*name].colorspace).is_none();
+        let names: BTreeSet<&String> = self.wanted.iter().map(|(name, _)| name).filter(unknown).collect();
+        for name in names {
+            let space = &self.data[name].colorspace;
+            let what = format!("the image's colour space \"{space}\" is not supported; sRGB is taken for it");
+            warnings.push(&self.place.at(name), what);
+        }
     }
 
     /// What the image is now; `None` for one that is not there.
     fn version_of(&self, name: &str, tile: Option<u32>) -> Option<Version> {
         let data = &self.data[name];
-        let color_space = color_space(&data.colorspace);
+        let space = space(data);
         if data.in_memory {
             let revision = self.in_memory.get(name)?.revision;
-            return Some(Version::Memory { revision, color_space });
+            return Some(Version::Memory { revision, space });
         }
-        Version::of_file(&path_of(data, tile), color_space)
+        Version::of_file(&path_of(data, tile), space)
     }
 
     fn decode(&self, name: &str, tile: Option<u32>) -> Result<ImageDesc> {
         let data = &self.data[name];
-        let color_space = color_space(&data.colorspace);
+        let space = space(data);
         let place = self.place.at(name);
         let name: Arc<str> = name.into();
         if !data.in_memory {
@@ -157,13 +170,13 @@ impl<'a> Images<'a> {
             if path.is_empty() {
                 return Err(Error::invalid(&place, "the image has neither a file nor pixels"));
             }
-            return load_image(Path::new(&path), color_space);
+            return load_image(Path::new(&path), space.stored()).map(|image| space.applied(image));
         }
         match self.in_memory.get(&*name).map(|image| &image.source) {
             None => Err(Error::invalid(&place, "the image's pixels were not handed over")),
             Some(ImageSource::Encoded(bytes)) => {
                 let hint = Path::new(&data.path).extension().and_then(|extension| extension.to_str());
-                decode_image(bytes, hint, &name, &place, color_space)
+                decode_image(bytes, hint, &name, &place, space.stored()).map(|image| space.applied(image))
             }
             Some(ImageSource::Pixels { width, height, values, linear }) => {
                 let (row, rows) = (*width as usize * 4, *height as usize);
@@ -172,9 +185,10 @@ impl<'a> Images<'a> {
                     return Err(Error::invalid(&place, what));
                 }
                 let pixels = PixelData::F32(values.chunks_exact(row).rev().flatten().copied().collect());
-                let color_space = if *linear { ColorSpace::Linear } else { color_space };
+                let space = if *linear { Space::Stored(ColorSpace::Linear) } else { space };
+                let color_space = space.stored();
                 let (width, height) = (*width, *height);
-                Ok(ImageDesc { name, place, width, height, channels: 4, color_space, pixels })
+                Ok(space.applied(ImageDesc { name, place, width, height, channels: 4, color_space, pixels }))
             }
         }
     }
@@ -185,12 +199,9 @@ fn path_of(data: &ImageData, tile: Option<u32>) -> String {
     tile.map_or_else(|| data.path.clone(), |tile| data.path.replace("<UDIM>", &tile.to_string()))
 }
 
-/// The transfer function of a colour space of Blender's configuration.
-fn color_space(name: &str) -> ColorSpace {
-    match name {
-        "sRGB" | "sRGB OETF" | "Filmic sRGB" | "" => ColorSpace::Srgb,
-        _ => ColorSpace::Linear,
-    }
+/// The colour space of the image; sRGB for one that is not known.
+fn space(data: &ImageData) -> Space {
+    Space::named(&data.colorspace).unwrap_or(Space::Stored(ColorSpace::Srgb))
 }
 
 fn magenta(name: &str, place: &Place) -> ImageDesc {
@@ -251,6 +262,34 @@ mod tests {
         let mut warnings = Warnings::new();
         images.finish(&mut KeptImages::default(), &mut warnings);
         assert!(warnings.iter().next().unwrap().what.contains("/no/wood.png"));
+    }
+
+    #[test]
+    fn a_space_that_is_not_known_is_told_once_and_another_space_is_decoded_again() {
+        let of = |colorspace: &str| -> HashMap<String, ImageData> {
+            [("a".into(), ImageData { in_memory: true, colorspace: colorspace.into(), ..ImageData::default() })].into()
+        };
+        let pixels = ImageSource::Pixels { width: 1, height: 1, values: vec![1.0, 0.0, 0.0, 0.5], linear: false };
+        let (in_memory, place) =
+            ([("a".to_owned(), InMemory { source: pixels, revision: 0 })].into(), Place::default());
+        let mut kept = KeptImages::default();
+        kept.turn_on();
+        let mut read = |colorspace: &str| {
+            let data = of(colorspace);
+            let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
+            images.image("a", None);
+            images.image("a", Some(1002));
+            let mut warnings = Warnings::new();
+            let image = images.finish(&mut kept, &mut warnings).0.remove(0);
+            (image, warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+        };
+        let (image, said) = read("Filmic Log");
+        assert_eq!(image.color_space, ColorSpace::Srgb);
+        assert_eq!(said, ["a: the image's colour space \"Filmic Log\" is not supported; sRGB is taken for it"]);
+        for (name, red) in [("ACEScg", 1.705_051), ("Linear Rec.2020", 1.660_490_9)] {
+            let (image, said) = read(name);
+            assert_eq!((image.pixels.get(0), image.pixels.get(3), said.len()), (red, 0.5, 0));
+        }
     }
 
     #[test]

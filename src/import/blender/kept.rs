@@ -5,22 +5,23 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use crate::desc::{ColorSpace, ImageDesc};
+use super::colors::Space;
+use crate::desc::ImageDesc;
 
 /// What tells whether an image is still the same.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Version {
     /// A file, by when it was written last and its size.
-    File { path: String, written: Option<SystemTime>, bytes: u64, color_space: ColorSpace },
+    File { path: String, written: Option<SystemTime>, bytes: u64, space: Space },
     /// An image in memory, by how many were handed over before it.
-    Memory { revision: u64, color_space: ColorSpace },
+    Memory { revision: u64, space: Space },
 }
 
 impl Version {
     /// That of the file at `path` as it is now; `None` where there is none.
-    pub fn of_file(path: &str, color_space: ColorSpace) -> Option<Self> {
+    pub fn of_file(path: &str, space: Space) -> Option<Self> {
         let data = Path::new(path).metadata().ok()?;
-        Some(Self::File { path: path.to_owned(), written: data.modified().ok(), bytes: data.len(), color_space })
+        Some(Self::File { path: path.to_owned(), written: data.modified().ok(), bytes: data.len(), space })
     }
 }
 
