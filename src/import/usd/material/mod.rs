@@ -164,8 +164,13 @@ impl<'a> Materials<'a> {
         self.finished.get(index as usize).map(|finished| &finished.material)
     }
 
-    /// What `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material asks for
-    /// none must have no colors: they would multiply its base color.
+    /// True where material `index` shows the colors of the shape.
+    pub fn is_tinted(&self, index: u32) -> bool {
+        self.get(index).is_some_and(|material| material.tinted)
+    }
+
+    /// What `MeshDesc::colors` of a shape with material `index` has to hold.
+    #[cfg(test)]
     pub fn vertex_colors(&self, index: u32) -> VertexColors {
         self.finished.get(index as usize).map(|finished| finished.colors.clone()).unwrap_or_default()
     }
@@ -209,7 +214,8 @@ impl<'a> Materials<'a> {
         scene.materials = self.finished.into_iter().map(|finished| finished.material).collect();
     }
 
-    fn add(&mut self, finished: Finished) -> u32 {
+    fn add(&mut self, mut finished: Finished) -> u32 {
+        finished.material.tinted = finished.colors != VertexColors::default();
         self.finished.push(finished);
         self.finished.len() as u32 - 1
     }
