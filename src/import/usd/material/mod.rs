@@ -7,6 +7,7 @@
 
 mod card;
 mod closure;
+mod coat;
 mod color;
 mod evaluate;
 mod expr;
@@ -188,12 +189,11 @@ impl<'a> Materials<'a> {
         normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0)).or(named)
     }
 
-    /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.
+    /// The UV sets that material `index` looks textures up by.
     pub fn used_uv_sets(&self, index: u32) -> Vec<u32> {
         let material = self.get(index);
         let mut sets: Vec<u32> = material.into_iter().flat_map(|m| m.textures()).map(|t| t.uv_set).collect();
         sets.extend(material.into_iter().flat_map(graph_uv_sets));
-        sets.extend(self.tangent_uv_set(index));
         sets.sort_unstable();
         sets.dedup();
         sets

@@ -99,6 +99,12 @@ impl Surface {
         if let Some(normals) = &mut normals {
             mend_normals(normals, &points, &triangles, place, warnings);
         }
+        let tangents_by = wants.tangents.and_then(|set| wants.uv_sets.get(set as usize));
+        let lost = tangents_by.filter(|name| !uvs.iter().any(|(known, _)| known == *name));
+        if let Some(name) = lost {
+            let what = format!("its material bends or stretches light along primvar {name}, which is absent");
+            warnings.note(place, format!("{what}: the direction is any of the surface"));
+        }
         let sets = uv_sets(uvs, wants, place, warnings, |channel| match channel {
             Some(channel) => {
                 let mut set = spread.attribute(channel);
