@@ -476,6 +476,36 @@ fn a_stage_has_a_picture_for_each_of_its_products() {
     assert_eq!(layers("one.exr"), ["Combined", "Depth", "Normal"]);
 }
 
+/// A product that can't be written is told by its prim, and costs none of the others unless a warning is an error.
+#[test]
+fn a_product_that_is_no_exr_file_is_left_out() {
+    let folder = Folder::new();
+    let text = include_str!("usd/stages/products.usda");
+    let run = |name: &str, text: &str, args: &[&str]| {
+        std::fs::write(folder.path(name), text).unwrap();
+        let mut program = Command::new(env!("CARGO_BIN_EXE_penumbra"));
+        program.current_dir(folder.path("")).args(["render", name, "--spp", "1"]).args(args).output().unwrap()
+    };
+    let first = text.replace("a.exr", "a.png");
+    let output = run("first.usda", &first, &[]);
+    let told =
+        "warning: first.usda, /Render/Beauty: names the picture a.png, but a render writes .exr files: it is left out";
+    assert!(output.status.success() && stderr(&output).contains(told), "{}", stderr(&output));
+    assert_eq!(folder.names(), ["b.exr", "first.usda"]);
+    let layers: Vec<_> = exr::read(&folder.path("b.exr")).unwrap().layers.into_iter().map(|l| l.name).collect();
+    assert!(layers.len() == 1 && layers[0].ends_with("Normal"), "{layers:?}");
+    let output = run("first.usda", &first, &["--strict"]);
+    assert!(!output.status.success() && stderr(&output).contains("--strict: 1 warnings"), "{}", stderr(&output));
+    // Whoever names the file has it.
+    assert!(run("first.usda", &first, &["--strict", "-o", "c.exr"]).status.success());
+    let output = run("none.usda", &first.replace("b.exr", "b.tif"), &[]);
+    let told = "none.usda, /Render/Beauty: its picture a.png: a render writes .exr files, the name must end so";
+    assert!(!output.status.success() && stderr(&output).contains(told), "{}", stderr(&output));
+    let output = run("nowhere.usda", &text.replace("b.exr", "no/such/b.exr"), &[]);
+    let told = "nowhere.usda, /Render/Data: its picture no/such/b.exr: can't write";
+    assert!(!output.status.success() && stderr(&output).contains(told), "{}", stderr(&output));
+}
+
 /// Where the command line is silent, a USD stage says where its picture goes and how large it is.
 #[test]
 fn a_stage_names_its_own_picture() {

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use clap::ArgMatches;
+use penumbra::error::Place;
 use penumbra::film::Picture;
 use penumbra::output::{self, Metadata, exr};
 
@@ -16,22 +17,32 @@ pub struct Files {
 }
 
 impl Files {
-    /// The files that `args` ask for at `frame`, or the scene by its `own` name. In a sequence every name gets the frame's number, for
+    /// The files that `args` ask for at `frame`, or the scene by its `own` name, which it says at the place. In a sequence every name gets the frame's number, for
     /// a single frame those that hold `#`.
     ///
     /// # Errors
     /// Names of another kind of file, which could be the scene's own, the environment's, or a place
     /// that can't be written.
-    pub fn of(args: &ArgMatches, frame: Option<f64>, own: Option<&str>) -> anyhow::Result<Self> {
+    pub fn of(args: &ArgMatches, frame: Option<f64>, own: Option<(&str, &Place)>) -> anyhow::Result<Self> {
         let sequence = args.contains_id("frames");
         let path = |name: &str| args.get_one::<PathBuf>(name).map(|path| numbered(path, frame, sequence)).transpose();
-        let own = || own.map(|own| numbered(Path::new(own), frame, sequence)).transpose();
-        let Some(out) = path("output")?.map_or_else(own, |out| Ok(Some(out)))? else {
-            bail!("-o OUT.exr is missing, and the scene names no picture of its own")
+        let out = match (path("output")?, own) {
+            (Some(out), _) => {
+                require(&out, "exr", "-o")?;
+                output::check_writable(&out)?;
+                out
+            }
+            (None, Some((own, place))) => {
+                let own = numbered(Path::new(own), frame, sequence).and_then(|out| {
+                    require(&out, "exr", "a render")?;
+                    output::check_writable(&out)?;
+                    Ok(out)
+                });
+                own.map_err(|error| anyhow!("{place}: its picture {error:#}"))?
+            }
+            (None, None) => bail!("-o OUT.exr is missing, and the scene names no picture of its own"),
         };
         let preview = path("preview")?;
-        require(&out, "exr", "-o")?;
-        output::check_writable(&out)?;
         if let Some(preview) = &preview {
             require(preview, "png", "--preview")?;
             output::check_writable(preview)?;
@@ -48,8 +59,13 @@ impl Files {
     }
 }
 
+/// True for names of that kind of file.
+pub fn is_of_kind(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
 fn require(path: &Path, extension: &str, flag: &str) -> anyhow::Result<()> {
-    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension)) {
+    if !is_of_kind(path, extension) {
         bail!("{}: {flag} writes .{extension} files, the name must end so", path.display());
     }
     Ok(())

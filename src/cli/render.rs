@@ -1,6 +1,6 @@
 //! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
@@ -13,7 +13,7 @@ use penumbra::output::{exr, png};
 use penumbra::scene::prepare;
 use penumbra::settings::{SETTINGS, Settings};
 
-use super::files::{Files, save};
+use super::files::{Files, is_of_kind, save};
 use super::progress::{Reporter, catch_interrupts, clock, interrupted, rendering};
 use super::{Outcome, environment, say, scene};
 
@@ -138,11 +138,15 @@ fn render_frame(
     // A name that was typed is checked before anything is read.
     let typed = if args.contains_id("output") { Some(Files::of(args, frame, None)?) } else { None };
     let (mut desc, mut warnings) = scene::load(args, frame)?;
+    let more = more_pictures(args, frame, &desc, &mut warnings)?;
     let files = match typed {
-        None if sample.is_none() => Some(Files::of(args, frame, desc.render.product.as_deref())?),
+        None if sample.is_none() => {
+            let alone = || desc.render.product.as_deref().map(|name| (name, &desc.render.product_place));
+            let first = more.first().map(|(_, product)| (&*product.name, &product.place));
+            Some(Files::of(args, frame, first.or_else(alone))?)
+        }
         typed => typed.filter(|_| sample.is_none()),
     };
-    let more = more_pictures(args, frame, &desc, &mut warnings)?;
     environment::apply(args, &mut desc)?;
     let view =
         job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
@@ -232,8 +236,18 @@ fn more_pictures(
         warnings.note(&desc.place, what);
         return Ok(Vec::new());
     }
-    let file = |product: &ProductDesc| Ok((Files::of(args, frame, Some(&product.name))?.out, product.clone()));
-    products.iter().map(file).collect()
+    let (written, others): (Vec<_>, Vec<_>) =
+        products.iter().partition(|product| is_of_kind(Path::new(&*product.name), "exr"));
+    // Where none is left, that is no warning but the end.
+    for product in others.into_iter().filter(|_| !written.is_empty()) {
+        let what = format!("names the picture {}, but a render writes .exr files: it is left out", product.name);
+        warnings.push(&product.place, what);
+    }
+    let file = |product: &ProductDesc| {
+        let files = Files::of(args, frame, Some((&product.name, &product.place)))?;
+        Ok((files.out, product.clone()))
+    };
+    written.into_iter().map(file).collect()
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.

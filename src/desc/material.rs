@@ -101,6 +101,8 @@ pub struct MaterialDesc {
     pub occlusion: Option<ScalarInput>,
     /// No scattering: the base colour is what is seen (KHR_materials_unlit).
     pub unlit: bool,
+    /// True where the colours of the shape, or where it has none that of the instance, multiply `base_color` and `alpha`.
+    pub tinted: bool,
     /// The camera sees a hole in the picture instead, black and of alpha 0; all other rays see the surface.
     pub holdout: bool,
     /// What it gives as AOVs, each name once; see [`RenderDesc::aovs`](super::RenderDesc::aovs).
@@ -146,6 +148,7 @@ impl Default for MaterialDesc {
             bump_correction: true,
             occlusion: None,
             unlit: false,
+            tinted: true,
             holdout: false,
             aovs: Vec::new(),
         }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::AovDesc;
+use crate::error::Place;
 
 /// Settings of a render as authored (UsdRender's RenderSettings); what is `None` or empty is not
 /// authored, and what the user sets comes first.
@@ -34,6 +35,8 @@ pub struct RenderDesc {
     pub aovs: Vec<AovDesc>,
     /// Where the file wants its picture, the first one.
     pub product: Option<Arc<str>>,
+    /// Where in the file that is said.
+    pub product_place: Place,
     /// Each of its pictures, where it wants more than one of the same view; `passes` are those of all.
     pub products: Vec<ProductDesc>,
 }
@@ -43,6 +46,8 @@ pub struct RenderDesc {
 pub struct ProductDesc {
     /// Where the file wants it.
     pub name: Arc<str>,
+    /// Where in the file that is said.
+    pub place: Place,
     /// Its passes, as `RenderDesc::passes`.
     pub passes: Vec<Arc<str>>,
 }
@@ -61,6 +66,7 @@ impl Default for RenderDesc {
             passes: Vec::new(),
             aovs: Vec::new(),
             product: None,
+            product_place: Place::default(),
             products: Vec::new(),
         }
     }

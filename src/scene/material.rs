@@ -142,6 +142,8 @@ pub struct Material {
     pub emission: ColorInput,
     /// True where nothing scatters and the emission is what is seen.
     pub unlit: bool,
+    /// Colours of shapes and instances multiply the base colour and alpha.
+    pub tinted: bool,
     /// The camera sees a hole in the picture instead.
     pub holdout: bool,
     /// Normal map.
@@ -296,7 +298,11 @@ impl Scene {
         }
     }
 
+    /// The colour that tints the surface at `it`.
     pub(super) fn vertex_color(&self, it: &Interaction) -> Option<[f32; 4]> {
+        if !self.material(it).tinted {
+            return None;
+        }
         let instance = &self.instances[it.instance as usize];
         self.shape(instance).color(it.primitive, it.at).or(instance.color)
     }

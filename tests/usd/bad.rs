@@ -150,3 +150,68 @@ def RenderSettings "Unnamed"
     assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
     assert_eq!(loaded.paths(), ["/Beyond"]);
 }
+
+/// What a stage of this text is told, and how much of it is a fault.
+fn told(text: &str) -> (Vec<String>, usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stage.usda");
+    std::fs::write(&path, format!("#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n{text}")).unwrap();
+    let mut warnings = penumbra::error::Warnings::new();
+    penumbra::import::scene(&path, &ImportOptions::default(), &mut warnings).unwrap();
+    let said = warnings.iter().map(|warning| format!("{}: {}", warning.place.node.as_deref().unwrap(), warning.what));
+    (said.collect(), warnings.faults())
+}
+
+#[test]
+fn arrays_that_do_not_fit_the_instances_are_told() {
+    let text = r#"def PointInstancer "Many" {
+        int[] protoIndices = [0, 0, 0, 0]
+        point3f[] positions = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]
+        int64[] ids = [1, 2]
+        vector3f[] velocities = [(1, 0, 0)]
+        color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0)] (interpolation = "vertex")
+        rel prototypes = </Many/Ball>
+        def Sphere "Ball" {}
+    }"#;
+    let expected = [
+        "/Many.primvars:displayColor: displayColor has 2 values, not one for each of 4 instances; it is left out",
+        "/Many: has 1 velocities for 4 positions; they are left out",
+        "/Many: has 2 ids for 4 instances; they are left out",
+    ];
+    let (mut said, faults) = told(text);
+    said.sort();
+    assert_eq!((said, faults), (expected.map(str::to_string).to_vec(), 3));
+}
+
+#[test]
+fn stretched_highlights_without_coordinates_are_no_fault() {
+    let text = r#"def Mesh "M" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        rel material:binding = </M/Look>
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        uniform token subdivisionScheme = "none"
+        def Material "Look" {
+            token outputs:mtlx:surface.connect = </M/Look/S.outputs:surface>
+            def Shader "S" {
+                uniform token info:id = "ND_open_pbr_surface_surfaceshader"
+                float inputs:specular_roughness_anisotropy = 0.5
+                token outputs:surface
+            }
+        }
+    }"#;
+    let note = "/M: its material bends or stretches light along primvar st, which is absent: the direction is any of the \
+                surface";
+    assert_eq!(told(text), (vec![note.to_string()], 0));
+}
+
+#[test]
+fn sizes_of_lights_have_no_sign() {
+    let text = r#"def RectLight "Rect" { float inputs:width = -2 }
+        def DiskLight "Disk" { float inputs:radius = -0.5 }"#;
+    let expected = [
+        "/Rect: its inputs:width is negative; taken without the sign",
+        "/Disk: its inputs:radius is negative; taken without the sign",
+    ];
+    assert_eq!(told(text), (expected.map(str::to_string).to_vec(), 2));
+}

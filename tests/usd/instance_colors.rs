@@ -3,7 +3,7 @@
 use penumbra::desc::{Attribute, InstanceDesc};
 use penumbra::import::ImportOptions;
 
-use super::{Loaded, load};
+use super::{Loaded, load, scene};
 
 /// Colours of all instances at `path`: that of the instance, or of the mesh with a note.
 fn colors(loaded: &Loaded, path: &str) -> Vec<(&'static str, [f32; 4])> {
@@ -50,4 +50,25 @@ fn native_instances_share_their_mesh_whatever_color_they_inherit() {
         assert_eq!(loaded.one(&green).shape, loaded.one(&above).shape);
     }
     assert_eq!(colors(&loaded, "/World/Green/Own"), [("mesh", [0.0, 0.0, 1.0, 1.0])]);
+}
+
+#[test]
+fn faces_beside_a_subset_with_a_material_keep_their_colors() {
+    let loaded = load("subset_colors.usda", &ImportOptions::default());
+    loaded.said_nothing();
+    let filter = penumbra::film::Filter::parse("triangle:0.01").unwrap();
+    let settings = penumbra::settings::Settings { filter, ..scene::settings("diffuse_color", 1) };
+    let picture = scene::picture(&loaded.scene, 4, &settings);
+    let layer = picture.layer("Diffuse Color").expect("the layer");
+    let n = layer.channels.len();
+    // Own colours, none, and those of two instances; the right half has the material.
+    let left = [[0.8, 0.1, 0.2], [0.5; 3], [0.9, 0.8, 0.1], [0.1, 0.7, 0.6]];
+    for (row, left) in left.into_iter().enumerate() {
+        for (column, expected) in [left, left, [0.25, 0.5, 0.75], [0.25, 0.5, 0.75]].into_iter().enumerate() {
+            let found = &layer.data[(4 * row + column) * n..][..3];
+            let close = found.iter().zip(expected).all(|(&a, b)| (f64::from(a) - b).abs() < 1e-3);
+            assert!(close, "row {row}, column {column}: {found:?} instead of {expected:?}");
+        }
+    }
+    assert_eq!(colors(&loaded, "/World/Covered"), [("none", [0.0; 4])]);
 }

@@ -15,6 +15,9 @@ mod mutation;
 mod primvars;
 #[path = "../support/rng.rs"]
 mod rng;
+#[path = "../support/scene.rs"]
+#[allow(dead_code, reason = "each test binary uses a part")]
+mod scene;
 mod shape_lights;
 mod shown;
 mod skel;

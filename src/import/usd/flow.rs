@@ -31,12 +31,18 @@ impl Flow {
         gains: Option<&str>,
         count: usize,
     ) -> Option<Self> {
-        // Without a frame nothing has passed since the first sample.
-        if reading.time.is_earliest_time() {
-            return None;
-        }
         let around = |name: &str| around(reading, &prim.attribute(name), reading.time);
-        let positions = around(array)?;
+        // Without a frame nothing has passed since the first sample.
+        let moves = !reading.time.is_earliest_time();
+        let Some(positions) = moves.then(|| around(array)).flatten() else {
+            for name in [Some(rates), gains].into_iter().flatten() {
+                let values: Vec<Vec3f> = reading.value(prim, name).unwrap_or_default();
+                if !values.is_empty() && values.len() != count {
+                    tell_of_count(reading, prim, name, values.len(), array, count);
+                }
+            }
+            return None;
+        };
         let values = |name: &str| {
             let samples = around(name);
             let from = samples.map_or(reading.time, |[from, ..]| TimeCode::new(from));
@@ -51,8 +57,7 @@ impl Flow {
                 return None;
             }
             if values.len() != count {
-                reading
-                    .warn(prim.path(), format!("has {} {name} for {count} {array}; they are left out", values.len()));
+                tell_of_count(reading, prim, name, values.len(), array, count);
                 return None;
             }
             Some(values)
@@ -74,6 +79,10 @@ impl Flow {
         let gained = self.gains.as_ref().map_or(DVec3::ZERO, |gains| 0.5 * seconds * vector(gains[i]));
         seconds * (vector(self.rates[i]) + gained)
     }
+}
+
+fn tell_of_count(reading: &Reading<'_>, prim: &Prim, name: &str, have: usize, array: &str, count: usize) {
+    reading.warn(prim.path(), format!("has {have} {name} for {count} {array}; they are left out"));
 }
 
 /// Times of the sample of `attribute` that counts at `time` and of those around it: a sample at `time` itself

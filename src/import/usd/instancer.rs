@@ -265,12 +265,6 @@ pub(super) fn turn([x, y, z, w]: [f64; 4]) -> DMat3 {
 
 /// Which instances are seen; `None` for all.
 fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
-    let mut off: HashSet<i64> =
-        reading.value::<Vec<i64>>(prim, "invisibleIds").unwrap_or_default().into_iter().collect();
-    off.extend(layer::inactive_ids(&reading.stage, prim));
-    if off.is_empty() {
-        return None;
-    }
     let ids: Option<Vec<i64>> = reading.value(prim, "ids").filter(|ids: &Vec<i64>| !ids.is_empty());
     let ids = ids.filter(|ids| {
         if ids.len() != count {
@@ -278,6 +272,12 @@ fn mask(reading: &Reading<'_>, prim: &Prim, count: usize) -> Option<Vec<bool>> {
         }
         ids.len() == count
     });
+    let mut off: HashSet<i64> =
+        reading.value::<Vec<i64>>(prim, "invisibleIds").unwrap_or_default().into_iter().collect();
+    off.extend(layer::inactive_ids(&reading.stage, prim));
+    if off.is_empty() {
+        return None;
+    }
     let seen = |i: usize| !off.contains(&ids.as_ref().map_or(i as i64, |ids| ids[i]));
     Some((0..count).map(seen).collect())
 }

@@ -11,7 +11,7 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::{Interpolation, Primvar, PrimvarsAPI};
 
 use super::gather::Found;
-use super::shape::primvar::{Channel, Counts, data, has_two_numbers};
+use super::shape::primvar::{Channel, data, has_two_numbers};
 use super::shape::tint;
 use super::shape::values::graph_values;
 use super::stage::Reading;
@@ -104,9 +104,8 @@ impl Known {
         }
         let read = || {
             let primvar = PrimvarsAPI::from_prim_unchecked(reading.stage.prim(&of.prim).ok()?).primvar(name).ok()?;
-            let counts = Counts { faces: of.count, joints: of.count, points: of.count, corners: of.count };
             let place = reading.place_of(primvar.attribute().path());
-            data(reading, &primvar, graph_values)?.fit(&counts, &place, &mut reading.warnings.borrow_mut())
+            data(reading, &primvar, graph_values)?.fit_instances(of.count, &place, &mut reading.warnings.borrow_mut())
         };
         let channel = self.0.entry((of.prim.clone(), name.clone())).or_insert_with(read).as_ref()?;
         Some(channel.at(index as usize))

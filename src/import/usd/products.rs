@@ -10,6 +10,7 @@ use super::render::resolution;
 use super::values::Values;
 use super::vars;
 use crate::desc::{Conform, ProductDesc};
+use crate::error::Place;
 
 /// What the products of some settings ask for.
 #[derive(Default)]
@@ -18,6 +19,8 @@ pub(super) struct Products {
     pub passes: Vec<Arc<str>>,
     /// Name of the first picture.
     pub name: Option<Arc<str>>,
+    /// Where that is said.
+    pub place: Place,
     /// Each picture, where there is more than one.
     pub pictures: Vec<ProductDesc>,
 }
@@ -45,7 +48,7 @@ pub(super) fn of(settings: Values<'_>, products: &[(Path, Prim)]) -> Products {
             None if pictures[0].name.is_none() => {
                 product.warn(format!("has the passes of {}, which names no picture, in its own", first.path));
                 picture.passes.iter().for_each(|pass| add(&mut pictures[0].passes, pass));
-                pictures[0].name = picture.name;
+                (pictures[0].name, pictures[0].place) = (picture.name, picture.place);
             }
             None => pictures.push(picture),
         }
@@ -58,16 +61,18 @@ pub(super) fn of(settings: Values<'_>, products: &[(Path, Prim)]) -> Products {
         }
         picture.passes.iter().for_each(|pass| add(&mut passes, pass));
     }
-    let name = pictures[0].name.clone();
-    let named = |picture: Picture<'_>| Some(ProductDesc { name: picture.name?, passes: picture.passes });
+    let (name, place) = (pictures[0].name.clone(), pictures[0].place.clone());
+    let named = |Picture { name, place, passes, .. }: Picture<'_>| Some(ProductDesc { name: name?, place, passes });
     let pictures = if several { pictures.into_iter().filter_map(named).collect() } else { Vec::new() };
-    Products { passes, name, pictures }
+    Products { passes, name, place, pictures }
 }
 
 /// A picture, and the product that asks for it first.
 struct Picture<'a> {
     product: Values<'a>,
     name: Option<Arc<str>>,
+    /// Where it has that from.
+    place: Place,
     passes: Vec<Arc<str>>,
 }
 
@@ -77,7 +82,7 @@ impl<'a> Picture<'a> {
         if product.token("productType").is_some_and(|kind| kind == "deepRaster") {
             product.warn("deep pictures are not written: it becomes a flat one");
         }
-        Self { product, name, passes: vars::passes(&product) }
+        Self { product, name, place: product.reading.place_of(product.path), passes: vars::passes(&product) }
     }
 }
 

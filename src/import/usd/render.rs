@@ -46,6 +46,7 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         window: said.window(),
         passes: products.passes,
         product: products.name,
+        product_place: products.place,
         products: products.pictures,
         ..RenderDesc::default()
     }

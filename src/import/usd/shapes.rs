@@ -150,8 +150,9 @@ fn wants(materials: &Materials<'_>, slots: &[Option<u32>], colored: bool) -> Wan
         let looked_at = set == 0 || used.contains(&set);
         if looked_at { materials.uv_sets[set as usize].clone() } else { "".into() }
     };
-    // Colours of a mesh are those of all of it: they must not tint a material that has its own.
-    let display_color = each().all(|m| tinted(materials, m));
+    let shows: Vec<bool> = slots.iter().map(|slot| slot.is_some_and(|m| materials.is_tinted(m))).collect();
+    let display_color = shows.contains(&true);
+    let some = display_color && shows.contains(&false);
     let mut named: Vec<_> = each().flat_map(|m| materials.named_primvars(m)).collect();
     named.sort_unstable();
     named.dedup();
@@ -161,12 +162,7 @@ fn wants(materials: &Materials<'_>, slots: &[Option<u32>], colored: bool) -> Wan
         spare_first_set: !used.contains(&0),
         tangents: each().find_map(|m| materials.tangent_uv_set(m)),
         display_color,
+        colored_slots: if some { shows } else { Vec::new() },
         instance_color: display_color && colored,
     }
-}
-
-/// True for a material that shows the colours of the mesh.
-fn tinted(materials: &Materials<'_>, index: u32) -> bool {
-    let colors = materials.vertex_colors(index);
-    colors.color.is_some() || colors.opacity.is_some()
 }

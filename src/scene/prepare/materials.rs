@@ -282,6 +282,7 @@ impl Builder<'_> {
             interior: volume.map(|volume| Interior { sigma: absorption(&volume), adds: volume.adds }),
             emission,
             unlit: desc.unlit,
+            tinted: desc.tinted,
             holdout: desc.holdout,
             normal: normal_map,
             bumps,

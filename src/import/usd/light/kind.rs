@@ -49,7 +49,11 @@ fn times(color: [f64; 3], factor: f64) -> [f64; 3] {
 
 impl Light<'_> {
     fn size(&self, name: &str, otherwise: f64) -> f64 {
-        self.values.number(name).unwrap_or(otherwise).abs()
+        let size = self.values.number(name).unwrap_or(otherwise);
+        if size < 0.0 {
+            self.values.warn(format!("its {name} is negative; taken without the sign"));
+        }
+        size.abs()
     }
 
     fn normalized(&self) -> bool {

@@ -7,6 +7,7 @@
 
 mod card;
 mod closure;
+mod coat;
 mod color;
 mod evaluate;
 mod expr;
@@ -164,8 +165,13 @@ impl<'a> Materials<'a> {
         self.finished.get(index as usize).map(|finished| &finished.material)
     }
 
-    /// What `MeshDesc::colors` of a shape with material `index` has to hold. A mesh whose material asks for
-    /// none must have no colors: they would multiply its base color.
+    /// True where material `index` shows the colors of the shape.
+    pub fn is_tinted(&self, index: u32) -> bool {
+        self.get(index).is_some_and(|material| material.tinted)
+    }
+
+    /// What `MeshDesc::colors` of a shape with material `index` has to hold.
+    #[cfg(test)]
     pub fn vertex_colors(&self, index: u32) -> VertexColors {
         self.finished.get(index as usize).map(|finished| finished.colors.clone()).unwrap_or_default()
     }
@@ -183,12 +189,11 @@ impl<'a> Materials<'a> {
         normal.or(material.anisotropy.filter(|a| a.strength.factor > 0.0).map(|_| 0)).or(named)
     }
 
-    /// Names of the primvars that material `index` looks textures up by: all of `uv_sets` that it uses.
+    /// The UV sets that material `index` looks textures up by.
     pub fn used_uv_sets(&self, index: u32) -> Vec<u32> {
         let material = self.get(index);
         let mut sets: Vec<u32> = material.into_iter().flat_map(|m| m.textures()).map(|t| t.uv_set).collect();
         sets.extend(material.into_iter().flat_map(graph_uv_sets));
-        sets.extend(self.tangent_uv_set(index));
         sets.sort_unstable();
         sets.dedup();
         sets
@@ -209,7 +214,8 @@ impl<'a> Materials<'a> {
         scene.materials = self.finished.into_iter().map(|finished| finished.material).collect();
     }
 
-    fn add(&mut self, finished: Finished) -> u32 {
+    fn add(&mut self, mut finished: Finished) -> u32 {
+        finished.material.tinted = finished.colors != VertexColors::default();
         self.finished.push(finished);
         self.finished.len() as u32 - 1
     }

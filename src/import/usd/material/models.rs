@@ -3,11 +3,11 @@
 //! Defaults and meaning: <https://openusd.org/release/spec_usdpreviewsurface.html>, and the definitions in
 //! `libraries/bxdf` of MaterialX 1.39.
 
-use super::closure;
 use super::evaluate::Evaluator;
 use super::expr::Id;
 use super::network::Source;
 use super::surface::{Alpha, Beneath, Coat, Film, Surface};
+use super::{closure, coat};
 use crate::desc::SubsurfaceMethod;
 use crate::desc::graph::{Function, Math};
 
@@ -120,6 +120,7 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let opacity = e.input(node, "opacity", [1.0; 4]);
     s.opacity = as_number(e, opacity);
     s.normal = e.optional(node, "normal");
+    coat::dim_emission(e, &mut s);
     s
 }
 
@@ -173,7 +174,7 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
         tint: e.input(node, "coat_color", [1.0; 4]),
         normal: e.optional(node, "geometry_coat_normal"),
     });
-    darken(e, node, &mut s, subsurface);
+    coat::darken(e, node, &mut s, subsurface);
     left_out(e, node, "coat_roughness_anisotropy", "coat's anisotropy");
     let fuzz = weighted(e, node, ["fuzz_weight", "fuzz_color"], [0.0, 1.0]);
     s.sheen = Some((fuzz, e.scalar(node, "fuzz_roughness", 0.5)));
@@ -187,43 +188,8 @@ fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     s.emission = weighted(e, node, ["emission_luminance", "emission_color"], [0.0, 1.0]);
     s.opacity = e.scalar(node, "geometry_opacity", 1.0);
     s.normal = e.optional(node, "geometry_normal");
+    coat::dim_emission(e, &mut s);
     s
-}
-
-/// What a coat throws back at what is beneath: `coat_darkening` by the node's own definition. What it does to the whole
-/// reflection beneath is done to its colors. Blender's coat, which is written as this one, does not darken.
-fn darken(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface, subsurface: Id) {
-    let Some(coat) = s.coat.filter(|coat| !e.exprs.is(coat.weight, 0.0)) else { return };
-    let amount = e.scalar(node, "coat_darkening", if e.materials.reading.blender { 0.0 } else { 1.0 });
-    let color = e.input(node, "base_color", [0.8; 4]);
-    let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
-    let x = &mut e.exprs;
-    let amount = x.multiply(coat.weight, amount);
-    if x.is(amount, 0.0) {
-        return;
-    }
-    let one = x.number(1.0);
-    let (below, above) = (x.subtract(one, coat.ior), x.add(one, coat.ior));
-    let ratio = x.math(Math::Divide, &[below, above]);
-    let f0 = x.multiply(ratio, ratio);
-    let (passes, squared) = (x.subtract(one, f0), x.multiply(coat.ior, coat.ior));
-    // What leaves through the coat, of light that comes from everywhere beneath it.
-    let leaves = x.math(Math::Divide, &[passes, squared]);
-    let returns = x.subtract(one, leaves);
-    let (metal, dielectric) = (x.multiply(color, s.specular), x.mix(color, beneath, subsurface));
-    let albedo = x.mix(dielectric, metal, s.metallic);
-    let again = x.multiply(albedo, returns);
-    let rest = x.subtract(one, again);
-    let factor = x.math(Math::Divide, &[leaves, rest]);
-    let factor = x.mix(one, factor, amount);
-    s.base_color = x.multiply(s.base_color, factor);
-    s.specular_color = x.multiply(s.specular_color, factor);
-    if let Some(beneath) = &mut s.beneath {
-        beneath.color = x.multiply(beneath.color, factor);
-    }
-    if let Some((_, color)) = &mut s.translucent {
-        *color = x.multiply(*color, factor);
-    }
 }
 
 fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
@@ -266,6 +232,7 @@ fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let strength = e.scalar(node, "anisotropy_strength", 0.0);
     s.anisotropy = Some((strength, e.uniform(node, "anisotropy_rotation", 0.0)));
     s.dispersion = e.uniform(node, "dispersion", 0.0);
+    coat::dim_emission(e, &mut s);
     s
 }
 

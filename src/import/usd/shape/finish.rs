@@ -76,6 +76,14 @@ impl Channels {
     }
 }
 
+impl Wants {
+    /// True where some triangle, by the `slots` of all, shows the colours of the mesh.
+    fn shows_colors(&self, slots: Option<&[u16]>) -> bool {
+        let shows = |slot: &u16| self.colored_slots.get(usize::from(*slot)).copied().unwrap_or(true);
+        self.display_color && slots.map_or_else(|| shows(&0), |slots| slots.iter().any(shows))
+    }
+}
+
 impl Surface {
     /// The mesh; `None`, with a warning, where nothing has area.
     pub fn finish(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<MeshDesc> {
@@ -91,6 +99,12 @@ impl Surface {
         if let Some(normals) = &mut normals {
             mend_normals(normals, &points, &triangles, place, warnings);
         }
+        let tangents_by = wants.tangents.and_then(|set| wants.uv_sets.get(set as usize));
+        let lost = tangents_by.filter(|name| !uvs.iter().any(|(known, _)| known == *name));
+        if let Some(name) = lost {
+            let what = format!("its material bends or stretches light along primvar {name}, which is absent");
+            warnings.note(place, format!("{what}: the direction is any of the surface"));
+        }
         let sets = uv_sets(uvs, wants, place, warnings, |channel| match channel {
             Some(channel) => {
                 let mut set = spread.attribute(channel);
@@ -100,15 +114,19 @@ impl Surface {
             }
             None => Attribute::Point(vec![[0.0, 1.0]; points.len()]),
         });
-        // What has no displayColor has that of its instance, or is grey, as in usdview.
-        let is_grey = wants.display_color && !(wants.instance_color && opacity.is_none());
-        let grey = || is_grey.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
-        let color = color.map(|c| spread.attribute(c)).or_else(grey);
-        let colors = colors(color, opacity.map(|o| spread.attribute(o)), &triangles);
-        let material_slots = slots.map(|slots| match &triangles.faces {
+        let material_slots: Option<Vec<u16>> = slots.map(|slots| match &triangles.faces {
             Some(faces) => faces.iter().map(|&face| slots[face as usize]).collect(),
             None => slots,
         });
+        let colors = if wants.shows_colors(material_slots.as_deref()) {
+            // What has no displayColor has that of its instance, or is grey, as in usdview.
+            let is_grey = !(wants.instance_color && opacity.is_none());
+            let grey = || is_grey.then(|| Attribute::Point(vec![UNCOLORED; points.len()]));
+            let color = color.map(|c| spread.attribute(c)).or_else(grey);
+            colors(color, opacity.map(|o| spread.attribute(o)), &triangles)
+        } else {
+            None
+        };
         let of_name = |(name, channel)| NamedAttribute { name, values: spread.attribute(channel) };
         let attributes = named.into_iter().map(of_name).collect();
         let tangents = wants.tangents.and_then(|set| {

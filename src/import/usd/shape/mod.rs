@@ -60,6 +60,8 @@ pub(super) struct Wants {
     pub tangents: Option<u32>,
     /// displayColor and displayOpacity as colours of the mesh.
     pub display_color: bool,
+    /// Which slots show those, where not all do.
+    pub colored_slots: Vec<bool>,
     /// Primvars that graphs ask for by name.
     pub named: Vec<Arc<str>>,
     /// True where instances have colours, which take the place of those that the shape lacks.

@@ -220,6 +220,31 @@ impl<const N: usize> Data<N> {
         }
     }
 
+    /// Holds the values against the `count` of instances, one for each or one for all; `None`, with a warning, where
+    /// there are too few.
+    pub(in super::super) fn fit_instances(
+        mut self,
+        count: usize,
+        place: &Place,
+        warnings: &mut Warnings,
+    ) -> Option<Channel<N>> {
+        let stride = self.stride.max(1);
+        let have = self.indices.as_ref().map_or(self.values.len().div_ceil(stride), Vec::len);
+        if have != count && !matches!(self.interpolation, Interpolation::Constant | Interpolation::Uniform) {
+            let what = format!("{} has {have} values, not one for each of {count} instances", self.name);
+            if have < count {
+                warnings.push(place, format!("{what}; it is left out"));
+                return None;
+            }
+            warnings.push(place, format!("{what}; the first ones are used"));
+            match &mut self.indices {
+                Some(indices) => indices.truncate(count),
+                None => self.values.truncate(count * stride),
+            }
+        }
+        self.fit(&Counts { faces: 1, joints: count, points: count, corners: count }, place, warnings)
+    }
+
     /// Holds the values against the counts of the shape; `None`, with a warning, where there are too few.
     pub(in super::super) fn fit(self, counts: &Counts, place: &Place, warnings: &mut Warnings) -> Option<Channel<N>> {
         let Self { name, interpolation, mut values, indices, stride } = self;

@@ -151,13 +151,13 @@ impl Rules {
         let lengths = &self.crease_lengths;
         let edges: usize =
             lengths.iter().map(|&length| usize::try_from(length).map_or(0, |n| n.saturating_sub(1))).sum();
+        self.tell_of_crease_counts(edges, place, warnings);
         let for_each_edge = self.crease_sharpnesses.len() == edges && edges != lengths.len();
         let mut creases = Vec::new();
         let (mut start, mut wrong, mut edge) = (0, 0, 0);
         for (crease, &length) in lengths.iter().enumerate() {
             let end = start + usize::try_from(length).unwrap_or(0);
             let Some(list) = self.crease_indices.get(start..end) else {
-                wrong += 1;
                 break;
             };
             for pair in list.windows(2) {
@@ -182,7 +182,28 @@ impl Rules {
         creases
     }
 
+    /// Tells of arrays that don't fit the creases, of `edges` in all; creases without sharpness are told elsewhere.
+    fn tell_of_crease_counts(&self, edges: usize, place: &Place, warnings: &mut Warnings) {
+        let points: usize = self.crease_lengths.iter().map(|&length| usize::try_from(length).unwrap_or(0)).sum();
+        let (creases, indices) = (self.crease_lengths.len(), self.crease_indices.len());
+        if points != indices {
+            let what = format!("has {indices} creaseIndices where its creaseLengths come to {points}");
+            let done = if points < indices { "those beyond are left out" } else { "the creases beyond are left out" };
+            warnings.push(place, format!("{what}; {done}"));
+        }
+        let sharpnesses = self.crease_sharpnesses.len();
+        if sharpnesses > creases && sharpnesses != edges {
+            let what = format!("has {sharpnesses} creaseSharpnesses for {creases} creases of {edges} edges");
+            warnings.push(place, format!("{what}; the first ones are used, one for each crease"));
+        }
+    }
+
     fn corners(&self, points: usize, place: &Place, warnings: &mut Warnings) -> Vec<(u32, f32)> {
+        let (indices, sharpnesses) = (self.corner_indices.len(), self.corner_sharpnesses.len());
+        if sharpnesses > indices {
+            let what = format!("has {sharpnesses} cornerSharpnesses for {indices} corners; the first ones are used");
+            warnings.push(place, what);
+        }
         let pairs = self.corner_indices.iter().zip(&self.corner_sharpnesses);
         let corners: Vec<(u32, f32)> = pairs
             .filter(|&(&i, &sharpness)| usize::try_from(i).is_ok_and(|i| i < points) && sharpness >= 0.0)

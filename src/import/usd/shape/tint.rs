@@ -8,7 +8,7 @@ use openusd_schemas::geom::{Interpolation, Primvar, PrimvarsAPI};
 
 use super::super::stage::Reading;
 use super::finish::UNCOLORED;
-use super::primvar::{Channel, Convert, Counts, data};
+use super::primvar::{Channel, Convert, data};
 use super::values::{scalars, triples};
 
 /// Linear color and straight alpha.
@@ -83,9 +83,8 @@ fn channel<const N: usize>(
     count: usize,
 ) -> Option<Channel<N>> {
     let primvar = primvars.iter().find(|primvar| primvar.primvar_name() == name)?;
-    let counts = Counts { faces: 1, joints: count, points: count, corners: count };
     let place = reading.place_of(primvar.attribute().path());
-    data(reading, primvar, convert)?.fit(&counts, &place, &mut reading.warnings.borrow_mut())
+    data(reading, primvar, convert)?.fit_instances(count, &place, &mut reading.warnings.borrow_mut())
 }
 
 /// The value of one instance; constant and uniform ones are those of all.

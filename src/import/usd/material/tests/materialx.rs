@@ -4,6 +4,15 @@ use super::super::super::images::tests::png;
 use super::*;
 use crate::desc::{AlphaMode, Channel, ColorSpace, NormalInput, TextureTransform, Wrap};
 
+/// Fresnel's reflectance of what `value_of` sees: the cosine is that of two vectors of halves, 3/4.
+fn reflected(ior: f64) -> f64 {
+    let cos: f64 = 0.75;
+    let within = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
+    let across = (cos - ior * within) / (cos + ior * within);
+    let along = (ior * cos - within) / (ior * cos + within);
+    0.5 * (across * across + along * along)
+}
+
 #[test]
 fn standard_surface_folds_its_weights() {
     let read = mtlx(
@@ -29,7 +38,9 @@ fn standard_surface_folds_its_weights() {
     same(&[m.coat.unwrap().weight.factor, m.coat.unwrap().roughness.factor], &[0.5, 0.1]);
     same(&m.sheen.unwrap().color.factor, &[0.5, 0.25, 0.0]);
     same(&[m.iridescence.unwrap().thickness.factor, m.iridescence.unwrap().ior.factor], &[400.0, 1.5]);
-    same(&m.emission.factor, &[3.0, 6.0, 9.0]);
+    let [red, rest] = [0.5, 1.0].map(|tint| 1.0 + 0.5 * (tint * (1.0 - reflected(1.5)) - 1.0));
+    let emission = value_of(m, m.emission.graph.unwrap(), &[]);
+    same(&emission[..3], &[3.0 * red, 6.0 * rest, 9.0 * rest]);
     same(&[m.alpha.factor], &[0.5]);
     assert_eq!(m.alpha_mode, AlphaMode::Blend);
 }
@@ -99,7 +110,9 @@ fn open_pbr_of_blender() {
             float3 outputs:out }",
     );
     let m = read.material();
-    same(&[m.emission.factor[0], m.sheen.unwrap().color.factor[0], m.alpha.factor], &[3.0, 0.4, 0.5]);
+    same(&[m.sheen.unwrap().color.factor[0], m.alpha.factor], &[0.4, 0.5]);
+    let emission = value_of(m, m.emission.graph.unwrap(), &[]);
+    same(&emission[..3], &[3.0 * (1.0 - 0.5 * reflected(1.5)); 3]);
     same(&[m.iridescence.unwrap().thickness.factor, m.coat.unwrap().ior.factor], &[300.0, 1.5]);
     let anisotropy = m.anisotropy.unwrap();
     same(&[anisotropy.strength.factor, anisotropy.rotation.factor], &[0.21 / 0.9, std::f64::consts::FRAC_PI_2]);
@@ -122,6 +135,10 @@ fn gltf_pbr_has_its_alpha_modes() {
     assert_eq!((m.alpha_mode, m.alpha), (AlphaMode::Opaque, ScalarInput::constant(1.0)));
     same(&[m.metallic.factor, m.roughness.factor], &[1.0, 1.0]);
     same(&m.emission.factor, &[5.0, 5.0, 0.0]);
+    let coated = mtlx("ND_gltf_pbr_surfaceshader", &format!("{lines}\nfloat inputs:clearcoat = 0.25"), "");
+    let emission = value_of(coated.material(), coated.material().emission.graph.unwrap(), &[]);
+    let left = 5.0 * (1.0 - 0.25 * reflected(1.5));
+    same(&emission[..3], &[left, left, 0.0]);
     let mask = mtlx("ND_gltf_pbr_surfaceshader", &format!("{lines}\nint inputs:alpha_mode = 1"), "");
     assert_eq!(mask.material().alpha_mode, AlphaMode::Mask { cutoff: 0.5 });
 }

@@ -206,3 +206,31 @@ fn what_is_broken_is_told_and_the_rest_stays() {
     assert_eq!(triangles.unwrap().len(), 1);
     assert!(warnings[0].contains("not finite"), "{warnings:?}");
 }
+
+#[test]
+fn arrays_of_creases_that_do_not_fit_are_told() {
+    let cage = QUADS.replace("\"none\"", "\"catmullClark\"");
+    let told = |lines: &str| built(&format!("def Mesh \"M\"\n{{\n{cage}\n{lines}\n}}\n"), "/M", &wants(&[]), 2).1;
+    let creases = "int[] creaseIndices = [0, 1, 2, 5, 4] int[] creaseLengths = [3, 2]";
+    for sharpnesses in ["[1, 2]", "[1, 2, 3]"] {
+        assert_eq!(told(&format!("{creases} float[] creaseSharpnesses = {sharpnesses}")), Vec::<String>::new());
+    }
+    assert_eq!(
+        told(&format!("{creases} float[] creaseSharpnesses = [1, 2, 3, 4]")),
+        ["has 4 creaseSharpnesses for 2 creases of 3 edges; the first ones are used, one for each crease"]
+    );
+    let of = |lengths: &str| {
+        told(&format!(
+            "int[] creaseIndices = [0, 1, 2, 5, 4] int[] creaseLengths = {lengths} float[] creaseSharpnesses = [1, 2]"
+        ))
+    };
+    assert_eq!(of("[2, 2]"), ["has 5 creaseIndices where its creaseLengths come to 4; those beyond are left out"]);
+    assert_eq!(
+        of("[3, 3]"),
+        ["has 5 creaseIndices where its creaseLengths come to 6; the creases beyond are left out"]
+    );
+    assert_eq!(
+        told("int[] cornerIndices = [0] float[] cornerSharpnesses = [1, 2]"),
+        ["has 2 cornerSharpnesses for 1 corners; the first ones are used"]
+    );
+}
