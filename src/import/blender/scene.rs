@@ -193,7 +193,9 @@ impl BlenderScene {
     /// The UV maps that materials name.
     fn uv_sets(&self) -> UvSets {
         let trees = self.document.materials.iter().filter_map(|material| material.nodes.as_ref());
-        UvSets::new(trees.flat_map(TreeData::uv_map_names), self.meshes.values())
+        let of_meshes = self.meshes.values().map(|mesh| &*mesh.uv_names);
+        let of_rounds = self.rounds.values().map(NamedRounds::uv_names);
+        UvSets::new(trees.flat_map(TreeData::uv_map_names), of_meshes.chain(of_rounds))
     }
 
     /// The scene as authored.
