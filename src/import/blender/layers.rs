@@ -4,8 +4,7 @@
 //! some material names has the same number in all meshes.
 
 use std::collections::HashMap;
-
-use super::mesh::NamedMesh;
+use std::sync::Arc;
 
 /// Which set of UVs each name stands for.
 #[derive(Debug, Default)]
@@ -16,19 +15,19 @@ pub struct UvSets {
 }
 
 impl UvSets {
-    /// Sets for the maps of `names` in `meshes`.
+    /// Sets for those of `names` that a shape has, by the maps of each shape, the one to render with first.
     pub fn new<'a>(
         names: impl IntoIterator<Item = String>,
-        meshes: impl Iterator<Item = &'a NamedMesh> + Clone,
+        shapes: impl Iterator<Item = &'a [Arc<str>]> + Clone,
     ) -> Self {
         let mut sets = Self::default();
         for name in names {
-            let has = |mesh: &NamedMesh| mesh.uv_names.iter().any(|known| **known == *name);
-            if sets.sets.contains_key(&name) || !meshes.clone().any(has) {
+            let has = |maps: &[Arc<str>]| maps.iter().any(|known| **known == *name);
+            if sets.sets.contains_key(&name) || !shapes.clone().any(has) {
                 continue;
             }
-            let is_first = |mesh: &NamedMesh| mesh.uv_names.first().is_none_or(|first| **first == *name);
-            let set = if meshes.clone().all(is_first) {
+            let is_first = |maps: &[Arc<str>]| maps.first().is_none_or(|first| **first == *name);
+            let set = if shapes.clone().all(is_first) {
                 0
             } else {
                 sets.names.push(name.clone());
@@ -39,7 +38,8 @@ impl UvSets {
         sets
     }
 
-    /// The set of a name; "" is the one to render with. `None` for a name that no material was known to use.
+    /// The set of a name; "" is the one to render with. `None` for a name that no shape has, or that no
+    /// material was known to use.
     pub fn set(&self, name: &str) -> Option<u32> {
         if name.is_empty() { Some(0) } else { self.sets.get(name).copied() }
     }

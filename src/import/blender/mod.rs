@@ -17,6 +17,7 @@ mod mesh;
 mod motion;
 mod nodes;
 mod random;
+mod reach;
 mod rounds;
 mod scene;
 mod smooth;

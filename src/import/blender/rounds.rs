@@ -88,6 +88,11 @@ impl NamedRounds {
         }
     }
 
+    /// Names of the UV maps; the first is the one to render with.
+    pub fn uv_names(&self) -> &[Arc<str>] {
+        &self.uv_names
+    }
+
     /// With the map to render with as set 0 and those of `uv_maps` after it; the same one as long as they are.
     pub fn dressed(&mut self, uv_maps: &[String]) -> Arc<RoundsDesc> {
         if self.uv_names.is_empty() || uv_maps.is_empty() {

@@ -13,7 +13,7 @@ use super::motion::{MovedInstances, MovedPoints};
 use super::nodes::TreeData;
 use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
-use super::{camera, light, material, nodes, random, rounds, world};
+use super::{camera, light, material, nodes, random, reach, rounds, world};
 use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
@@ -100,7 +100,9 @@ impl BlenderScene {
     ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let mesh = mesh::mesh(name, &self.place(), arrays, uvs, values, &mut warnings)?;
+        let within = reach::within(arrays.positions);
+        let arrays = MeshArrays { positions: within.as_deref().unwrap_or(arrays.positions), ..*arrays };
+        let mesh = mesh::mesh(name, &self.place(), &arrays, uvs, values, &mut warnings)?;
         self.meshes.insert(key, mesh);
         self.of_shapes.insert(key, warnings);
         Ok(())
@@ -193,7 +195,9 @@ impl BlenderScene {
     /// The UV maps that materials name.
     fn uv_sets(&self) -> UvSets {
         let trees = self.document.materials.iter().filter_map(|material| material.nodes.as_ref());
-        UvSets::new(trees.flat_map(TreeData::uv_map_names), self.meshes.values())
+        let of_meshes = self.meshes.values().map(|mesh| &*mesh.uv_names);
+        let of_rounds = self.rounds.values().map(NamedRounds::uv_names);
+        UvSets::new(trees.flat_map(TreeData::uv_map_names), of_meshes.chain(of_rounds))
     }
 
     /// The scene as authored.

@@ -18,6 +18,7 @@ mod surface;
 mod tables;
 mod texture;
 mod tree;
+mod uv;
 mod values;
 mod vector;
 mod volume;
