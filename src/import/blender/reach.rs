@@ -34,7 +34,7 @@ mod tests {
             };
             let mut scene = BlenderScene::default();
             scene.set_document(&json!({"objects": [{"name": "O", "mesh": 1}]}).to_string()).unwrap();
-            scene.set_mesh(1, "quad", &arrays, &[], &[]).unwrap();
+            scene.set_mesh(1, "quad", &arrays, &[], [&[], &[]]).unwrap();
             let matrix = glam::Mat4::IDENTITY.to_cols_array();
             scene.set_instances(&[0], &matrix, &[0]).unwrap();
             let mut warnings = Warnings::new();

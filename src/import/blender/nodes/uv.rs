@@ -44,13 +44,13 @@ mod tests {
             triangles: &[0, 1, 2],
             ..MeshArrays::default()
         };
-        scene.set_mesh(1, "mesh", &arrays, &[LayerArray { name: of_mesh, values: &[0.5; 6] }], &[]).unwrap();
+        scene.set_mesh(1, "mesh", &arrays, &[LayerArray { name: of_mesh, values: &[0.5; 6] }], [&[], &[]]).unwrap();
         if !of_rounds.is_empty() {
             let uvs = [LayerArray { name: of_rounds, values: &[0.5; 2] }];
             scene.set_rounds(2, "hair", &[0.0; 6], &[1.0; 2], Ends { points: &[2], ..Ends::default() }, &uvs).unwrap();
         }
         let desc = scene.scene(&mut Warnings::new()).unwrap();
-        desc.materials[0].aovs[0].color.clone()
+        desc.materials[0].aovs[0].color
     }
 
     #[test]
