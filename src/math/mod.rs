@@ -10,6 +10,7 @@ mod ray;
 mod rgb;
 mod round;
 mod scalar;
+mod srgb;
 mod transform;
 
 pub use bounds::Bounds;
@@ -20,4 +21,5 @@ pub use ray::{Ray, offset_ray_origin};
 pub use rgb::Rgb;
 pub use round::{Ball, Foot, RoundCone, RoundPoint, center_of, share_of};
 pub use scalar::{ONE_MINUS_EPSILON, gamma, safe_acos, safe_sqrt, sqr};
+pub use srgb::{srgb_to_linear, srgb_to_linear_f64};
 pub use transform::place_point;

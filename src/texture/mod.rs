@@ -13,5 +13,4 @@ mod transform;
 
 pub use image::Image;
 pub use lookup::Texture;
-pub use srgb::decode as srgb_to_linear;
 pub use transform::{TextureRef, UvTransform};

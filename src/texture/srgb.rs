@@ -1,21 +1,13 @@
-//! The sRGB transfer function, IEC 61966-2-1, and its table for 8-bit texels.
+//! The sRGB transfer function's inverse, and tables of both for 8-bit texels.
 
 use std::sync::LazyLock;
+
+pub(super) use crate::math::srgb_to_linear as decode;
+use crate::math::srgb_to_linear_f64 as decode_f64;
 
 /// Linear value of each 8-bit code.
 pub(super) static DECODE_U8: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| decode_f64(code as f64 / 255.0) as f32));
-
-/// Linear value of an sRGB-encoded one; odd about 0, so that negative values of float images stay.
-pub fn decode(encoded: f32) -> f32 {
-    decode_f64(f64::from(encoded)) as f32
-}
-
-fn decode_f64(encoded: f64) -> f64 {
-    let e = encoded.abs();
-    let linear = if e <= 0.04045 { e / 12.92 } else { ((e + 0.055) / 1.055).powf(2.4) };
-    linear.copysign(encoded)
-}
 
 /// Inverse of [`decode`].
 pub(super) fn encode(linear: f32) -> f32 {

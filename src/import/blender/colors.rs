@@ -6,7 +6,7 @@ use half::f16;
 use rayon::prelude::*;
 
 use crate::desc::{ColorSpace, ImageDesc, PixelData};
-use crate::texture::srgb_to_linear;
+use crate::math::srgb_to_linear;
 
 /// By rows, to linear Rec.709.
 type Matrix = [[f32; 3]; 3];

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::mend::{LARGEST, Mended};
 use crate::desc::{ColorSpace, ImageDesc};
 use crate::math::Rgb;
-use crate::texture::srgb_to_linear;
+use crate::math::srgb_to_linear;
 
 /// The texels of `image`, to be multiplied by `factor`, and whether some had to be mended.
 pub fn texels(image: &ImageDesc, factor: Rgb, mended: &mut Mended) -> (Vec<Rgb>, bool) {
