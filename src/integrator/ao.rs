@@ -44,7 +44,7 @@ fn distance(settings: &Settings) -> f32 {
 /// The integrator that renders nothing else: Combined holds the ao pass.
 pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings: &Settings) -> PixelSample {
     let mut sample = PixelSample::of(&scene.passes);
-    let Some(first) = super::path::first_surface(scene, sampler, ray, cone, settings, &mut sample) else {
+    let Some(first) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
         return sample;
     };
     let First { it, vertex, media, left } = first;

@@ -15,6 +15,9 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Of rays that look for the first surface and scatter nowhere.
+    pub const NONE: Self = Self { scatterings: u32::MAX, by_lobe: [u32::MAX; 3], sums: [f32::INFINITY; 2] };
+
     /// Those of `settings` for paths of at most `max_bounces` scatterings after the first hit.
     pub fn of(settings: &Settings, max_bounces: u32) -> Self {
         let of_lobe = |limit: Option<u32>| limit.unwrap_or(max_bounces).min(max_bounces);
@@ -26,7 +29,8 @@ impl Limits {
         }
     }
 
-    /// True after `scatterings`, of which `state` knows the kinds: what is met now is seen for what it emits, and nothing more.
+    /// True after `scatterings`, of which `state` knows the kinds: what is met now is seen for what it emits, and
+    /// nothing more.
     #[inline]
     pub fn exhausted(&self, scatterings: u32, state: &PathState) -> bool {
         let [diffuse, glossy, transmission] = self.by_lobe;

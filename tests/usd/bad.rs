@@ -4,7 +4,7 @@ use std::path::Path;
 
 use penumbra::import::ImportOptions;
 
-use super::{load, stage, try_load};
+use super::{load, load_text, stage, try_load};
 
 #[test]
 fn what_is_broken_is_told_and_the_rest_is_shown() {
@@ -89,10 +89,7 @@ def Cube "Flat"
     double size = 0
 }
 "#;
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("stage.usda");
-    std::fs::write(&path, text).unwrap();
-    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
+    let loaded = load_text(text);
     let told = [
         "/Mesh: has MaterialBindingAPI_7, a version of MaterialBindingAPI that is not known; it is ignored",
         "/Mesh: has CollectionAPI_9:some, a version of CollectionAPI that is not known; it is ignored",
@@ -134,10 +131,7 @@ def RenderSettings "Unnamed"
 {
 }
 "#;
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("stage.usda");
-    std::fs::write(&path, text).unwrap();
-    let loaded = try_load(&path, &ImportOptions::default()).unwrap();
+    let loaded = load_text(text);
     let told = [
         "/Inside: its internal reference to </Nothing> finds no prim there; it is left out",
         "/Short: 1 curves have too few points for their basis; they are left out",

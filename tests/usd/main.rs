@@ -52,6 +52,14 @@ fn load(name: &str, options: &ImportOptions) -> Loaded {
     try_load(&stage(name), options).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
+/// A stage of one layer that is this text.
+fn load_text(text: &str) -> Loaded {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stage.usda");
+    std::fs::write(&path, text).unwrap();
+    try_load(&path, &ImportOptions::default()).unwrap()
+}
+
 fn at_frame(frame: f64) -> ImportOptions {
     ImportOptions { frame: Some(frame), ..ImportOptions::default() }
 }

@@ -9,6 +9,9 @@ use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::tangents;
 
+/// Nothing can be computed with a vertex that is farther out: about where `f32` can't hold squares any more.
+const REACH: f32 = 1e18;
+
 /// The arrays of an evaluated mesh, as `foreach_get` fills them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeshArrays<'a> {
@@ -130,8 +133,8 @@ impl NamedMesh {
 /// The mesh of `arrays`, with UV maps, colour attributes, and other attributes as colors, too.
 ///
 /// # Errors
-/// Arrays whose lengths or indices don't fit together. Vertices that are not finite are told, and
-/// the triangles at them left out.
+/// Arrays whose lengths or indices don't fit together. Vertices that are not finite or beyond
+/// [`REACH`] are told, and the triangles at them left out.
 pub fn mesh(
     name: &str,
     place: &Place,
@@ -152,7 +155,9 @@ pub fn mesh(
     if let Some(index) = arrays.triangles.par_iter().find_any(|&&i| !in_range(i, corners)) {
         return Err(broken(format!("refers to corner {index} of {corners}")));
     }
-    let positions: Vec<[f32; 3]> = arrays.positions.as_chunks::<3>().0.to_vec();
+    // So that those beyond reach are left out of every box, too.
+    let within = |p: &[f32; 3]| p.map(|x| if x.abs() > REACH { f32::NAN } else { x });
+    let positions: Vec<[f32; 3]> = arrays.positions.as_chunks::<3>().0.par_iter().map(within).collect();
     let corners_of: &[[i32; 3]] = arrays.triangles.as_chunks::<3>().0;
     let vertex = |corner: i32| arrays.corner_verts[corner as usize] as u32;
     let kept = kept_triangles(&positions, corners_of, vertex, name, place, warnings);
@@ -205,7 +210,7 @@ pub fn mesh(
     Ok(NamedMesh { mesh: mesh.into(), dressed: None, uv_names: uvs.iter().map(|layer| layer.name.into()).collect() })
 }
 
-/// Corners of the triangles whose vertices are all finite, and which triangles those are; `None`
+/// Corners of the triangles whose vertices are all finite (those beyond reach are not any more), and which triangles those are; `None`
 /// where all are.
 fn kept_triangles(
     positions: &[[f32; 3]],
@@ -223,7 +228,9 @@ fn kept_triangles(
     let good = |t: &[i32; 3]| t.iter().all(|&corner| finite(&positions[vertex(corner) as usize]));
     let kept: Vec<u32> = (0..corners_of.len() as u32).filter(|&i| good(&corners_of[i as usize])).collect();
     let left_out = corners_of.len() - kept.len();
-    let what = format!("the mesh \"{name}\" has {bad} vertices that are not finite; {left_out} triangles are left out");
+    let what = format!(
+        "the mesh \"{name}\" has {bad} vertices that are not finite or too far away; {left_out} triangles are left out"
+    );
     warnings.push(place, what);
     Some((kept.iter().map(|&i| corners_of[i as usize]).collect(), kept))
 }
@@ -348,6 +355,22 @@ mod tests {
         let (mesh, said) = built(&MeshArrays { positions: &positions, material_index: &[7], ..quad() }, &[]);
         let mesh = mesh.unwrap().mesh;
         assert_eq!((&mesh.triangles, &mesh.material_slots), (&vec![[0, 2, 3]], &Some(vec![7])));
-        assert_eq!(said, ["the mesh \"quad\" has 1 vertices that are not finite; 1 triangles are left out"]);
+        assert_eq!(
+            said,
+            ["the mesh \"quad\" has 1 vertices that are not finite or too far away; 1 triangles are left out"]
+        );
+    }
+
+    #[test]
+    fn triangles_at_a_vertex_beyond_reach_are_left_out_and_told() {
+        for (x, left) in [(1e30, 1), (-1e30, 1), (f32::INFINITY, 1), (1e17, 2)] {
+            let mut positions = POSITIONS;
+            positions[3] = x;
+            let (mesh, said) = built(&MeshArrays { positions: &positions, ..quad() }, &[]);
+            assert_eq!(mesh.unwrap().mesh.triangles.len(), left, "{x}");
+            let told =
+                ["the mesh \"quad\" has 1 vertices that are not finite or too far away; 1 triangles are left out"];
+            assert_eq!(said, told[..2 - left], "{x}");
+        }
     }
 }

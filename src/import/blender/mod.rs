@@ -17,7 +17,6 @@ mod mesh;
 mod motion;
 mod nodes;
 mod random;
-mod reach;
 mod rounds;
 mod scene;
 mod smooth;

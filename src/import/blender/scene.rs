@@ -13,7 +13,7 @@ use super::motion::{MovedInstances, MovedPoints};
 use super::nodes::TreeData;
 use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
-use super::{camera, light, material, nodes, random, reach, rounds, world};
+use super::{camera, light, material, nodes, random, rounds, world};
 use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
 use crate::error::{Error, Place, Result, Warnings};
 
@@ -100,9 +100,7 @@ impl BlenderScene {
     ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let within = reach::within(arrays.positions);
-        let arrays = MeshArrays { positions: within.as_deref().unwrap_or(arrays.positions), ..*arrays };
-        let mesh = mesh::mesh(name, &self.place(), &arrays, uvs, values, &mut warnings)?;
+        let mesh = mesh::mesh(name, &self.place(), arrays, uvs, values, &mut warnings)?;
         self.meshes.insert(key, mesh);
         self.of_shapes.insert(key, warnings);
         Ok(())

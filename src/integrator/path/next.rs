@@ -7,7 +7,6 @@ use crate::integrator::limits::Limits;
 use crate::math::{Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler};
 use crate::scene::{Coverage, Interaction, Media, PathState, RayCone, Scene};
-use crate::settings::Settings;
 
 /// What a path meets on its way to the next surface that scatters.
 pub(super) enum Met<'a> {
@@ -18,7 +17,8 @@ pub(super) enum Met<'a> {
 }
 
 /// The next surface that scatters, or `None` for the background. Surfaces that let the path pass
-/// are passed by the odds of their opacity, unless so many were that the path may pass no more. `visit` is called with everything on the way.
+/// are passed by the odds of their opacity, unless so many were that the path may pass no
+/// more. `visit` is called with everything on the way.
 pub(super) fn next_surface(
     scene: &Scene,
     sampler: &Sampler,
@@ -84,11 +84,9 @@ pub fn first_surface(
     sampler: &Sampler,
     ray: Ray,
     cone: RayCone,
-    settings: &Settings,
     sample: &mut PixelSample,
 ) -> Option<First> {
-    let limits = Limits::of(settings, 0);
-    let mut path = Path::from_camera(scene, ray, cone, &limits);
+    let mut path = Path::from_camera(scene, ray, cone, &Limits::NONE);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
     let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
         Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),

@@ -35,15 +35,17 @@ fn object_coordinates<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> ValueId {
     flow.graph.affine([row(0), row(1), row(2)], position)
 }
 
-/// UV Map.
+/// UV Map: (0, 0, 0) for a map that nothing in the scene has, as in Cycles.
 pub fn uv_map<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     uv_set(flow, at.node.text("uv_map"))
 }
 
-/// The UV map of a name, v upwards.
+/// The UV map of a name, v upwards; 0 where nothing has it.
 pub fn uv_set(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
-    let set = flow.uv_sets.set(name).unwrap_or(0);
-    flow.graph.uv_upwards(set)
+    match flow.uv_sets.set(name) {
+        Some(set) => flow.graph.uv_upwards(set),
+        None => flow.graph.number(0.0),
+    }
 }
 
 /// Geometry.
@@ -180,4 +182,55 @@ pub fn layer_weight<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> Va
     let blend = flow.input(at, "Blend");
     let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
     if output == "Fresnel" { flow.graph.layer_fresnel(blend, normal) } else { flow.graph.layer_facing(blend, normal) }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::super::super::{BlenderScene, Ends, LayerArray, MeshArrays};
+    use crate::desc::ColorInput;
+    use crate::error::Warnings;
+
+    /// What the UV map `asked` for is, in a scene whose mesh and strands (none where empty) have these.
+    fn color(of_mesh: &str, of_rounds: &str, asked: &str) -> ColorInput {
+        let aov = json!({
+            "name": "A", "type": "ShaderNodeOutputAOV", "properties": {"aov_name": "a"},
+            "inputs": [
+                {"id": "Color", "name": "Color", "type": "RGBA", "enabled": true, "link": [1, 0]},
+                {"id": "Value", "name": "Value", "type": "VALUE", "enabled": true, "value": 0.0},
+            ],
+        });
+        let uv = json!({
+            "name": "UV", "type": "ShaderNodeUVMap", "inputs": [], "properties": {"uv_map": asked},
+            "outputs": [{"id": "UV", "type": "VECTOR"}],
+        });
+        let mut scene = BlenderScene::default();
+        let document = json!({"version": [5, 0, 1], "render": {"aovs": [["a", "COLOR"]]}});
+        scene.set_document(&document.to_string()).unwrap();
+        scene.set_material(1, &json!({"name": "M", "nodes": {"nodes": [aov, uv]}}).to_string()).unwrap();
+        scene.set_materials(&[1]).unwrap();
+        let arrays = MeshArrays {
+            positions: &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0],
+            corner_verts: &[0, 1, 2],
+            triangles: &[0, 1, 2],
+            ..MeshArrays::default()
+        };
+        scene.set_mesh(1, "mesh", &arrays, &[LayerArray { name: of_mesh, values: &[0.5; 6] }], [&[], &[]]).unwrap();
+        if !of_rounds.is_empty() {
+            let uvs = [LayerArray { name: of_rounds, values: &[0.5; 2] }];
+            scene.set_rounds(2, "hair", &[0.0; 6], &[1.0; 2], Ends { points: &[2], ..Ends::default() }, &uvs).unwrap();
+        }
+        let desc = scene.scene(&mut Warnings::new()).unwrap();
+        desc.materials[0].aovs[0].color
+    }
+
+    #[test]
+    fn a_map_that_nothing_has_is_zero() {
+        let zero = ColorInput::constant([0.0; 3]);
+        assert_eq!(color("UVMap", "", "Other"), zero);
+        assert_ne!(color("UVMap", "", "UVMap"), zero);
+        assert_ne!(color("UVMap", "", ""), zero);
+        assert_ne!(color("UVMap", "Other", "Other"), zero);
+    }
 }

@@ -18,7 +18,6 @@ mod surface;
 mod tables;
 mod texture;
 mod tree;
-mod uv;
 mod values;
 mod vector;
 mod volume;

@@ -1,7 +1,7 @@
 //! The table of nodes that make values: `bl_idname` and what its outputs are.
 
 use super::flow::{At, Flow};
-use super::{color, input, lamp, math, procedural, sky, texture, uv, vector};
+use super::{color, input, lamp, math, procedural, sky, texture, vector};
 use crate::desc::graph::ValueId;
 
 /// What the output of this identifier of a node is.
@@ -13,7 +13,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeValue", input::constant),
     ("ShaderNodeRGB", input::constant),
     ("ShaderNodeTexCoord", input::texture_coordinate),
-    ("ShaderNodeUVMap", uv::uv_map),
+    ("ShaderNodeUVMap", input::uv_map),
     ("ShaderNodeNewGeometry", input::geometry),
     ("ShaderNodeAttribute", input::attribute),
     ("ShaderNodeVertexColor", input::color_attribute),
