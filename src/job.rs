@@ -12,7 +12,7 @@ use crate::settings::{SETTINGS, Settings};
 
 /// Camera and size: what the user asked for, or what the file asks for.
 pub fn view(camera: Option<String>, size: Option<[u32; 2]>, desc: &SceneDesc, warnings: &mut Warnings) -> View {
-    let own = &desc.render;
+    let own = &desc.render.framing;
     let camera = camera.or_else(|| {
         let name = own.camera.as_deref()?;
         let is_it = |c: &CameraDesc| *c.name == *name || c.place.node.as_deref() == Some(name);

@@ -6,6 +6,7 @@ mod info;
 mod progress;
 mod render;
 mod say;
+mod shots;
 
 use std::process::ExitCode;
 

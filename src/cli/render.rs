@@ -6,15 +6,17 @@ use anyhow::{Context, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use penumbra::desc::{ProductDesc, SceneDesc};
-use penumbra::error::Warnings;
+use penumbra::error::{Place, Warnings};
 use penumbra::film::SampleId;
 use penumbra::job;
 use penumbra::output::{exr, png};
-use penumbra::scene::prepare;
+use penumbra::render::Rendered;
+use penumbra::scene::{Cache, Prepared, prepare_with};
 use penumbra::settings::{SETTINGS, Settings};
 
-use super::files::{Files, is_of_kind, save};
+use super::files::{Files, save};
 use super::progress::{Reporter, catch_interrupts, clock, interrupted, rendering};
+use super::shots::{self, Shot};
 use super::{Outcome, environment, say, scene};
 
 pub fn command() -> Command {
@@ -134,120 +136,148 @@ fn render_frame(
     frame: Option<f64>,
     told: &mut Warnings,
 ) -> anyhow::Result<Outcome> {
-    let sample = args.get_one::<[u64; 3]>("debug-sample");
+    let is_debug = args.contains_id("debug-sample");
     // A name that was typed is checked before anything is read.
     let typed = if args.contains_id("output") { Some(Files::of(args, frame, None)?) } else { None };
     let (mut desc, mut warnings) = scene::load(args, frame)?;
-    let more = more_pictures(args, frame, &desc, &mut warnings)?;
+    let shots = shots::of(args, frame, &desc, &mut warnings)?;
     let files = match typed {
-        None if sample.is_none() => {
+        None if !is_debug => {
             let alone = || desc.render.product.as_deref().map(|name| (name, &desc.render.product_place));
-            let first = more.first().map(|(_, product)| (&*product.name, &product.place));
+            let first = shots[0].pictures.first().map(|(_, product)| (&*product.name, &product.place));
             Some(Files::of(args, frame, first.or_else(alone))?)
         }
-        typed => typed.filter(|_| sample.is_none()),
+        typed => typed.filter(|_| !is_debug),
     };
     environment::apply(args, &mut desc)?;
-    let view =
-        job::view(args.get_one::<String>("camera").cloned(), args.get_one("size").copied(), &desc, &mut warnings);
-    let settings = &match args.value_source("passes") {
-        Some(ValueSource::CommandLine) => settings.clone(),
-        _ => job::with_own_passes(settings, &desc, &mut warnings),
-    };
-    let prepared = prepare(desc, &view, settings)?;
-    warnings.extend(prepared.warnings.clone());
-    tell(&warnings, told);
-    if args.get_flag("strict") && warnings.faults() > 0 {
-        bail!("--strict: {} warnings about {}", warnings.faults(), scene::path(args).display());
+    let last = shots.len() - 1;
+    let mut cache = if last > 0 { Cache::new() } else { Cache::default() };
+    for (i, shot) in shots.iter().enumerate() {
+        let mut desc = if i == last { std::mem::take(&mut desc) } else { desc.clone() };
+        desc.render = shot.render(&desc.render);
+        let files = if i == 0 { files.as_ref() } else { None };
+        let job = Job { args, frame, shot, files };
+        if let Outcome::Interrupted = job.render(desc, settings, &mut cache, warnings.clone(), told)? {
+            if i < last {
+                say::err(format!("not rendered: {}", names(&shots[i + 1..])));
+            }
+            return Ok(Outcome::Interrupted);
+        }
     }
-    let scene = &prepared.scene;
-    let Some(Files { out, preview }) = files else {
-        return sample.map_or(Ok(Outcome::Done), |&[x, y, index]| debug_sample(scene, settings, x, y, index));
-    };
-    rendering(true);
-    let reporter = Reporter::new(args.get_one::<String>("progress").expect("has a default"), &out, frame);
-    let rendered = penumbra::render::render(scene, settings, &reporter);
-    reporter.finish();
-    let rendered = rendered?;
-    let film = &rendered.film;
-    let bad = film.non_finite();
-    if let Some(SampleId { x, y, index }) = bad.first {
-        let what =
-            format!("{} samples were not finite and left out; the first: --debug-sample {x},{y},{index}", bad.count);
-        warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
-        say::err(format!("warning: {what}"));
-    }
-    let short = job::shortfalls(&rendered, settings);
-    for what in &short {
-        warnings.push(&penumbra::error::Place::file(scene::path(args)), what.clone());
-        say::err(format!("warning: {what}"));
-    }
-    let spp = job::samples_per_pixel(film);
-    let name = scene::path(args).display().to_string();
-    let metadata = job::metadata(name, frame, &prepared, &rendered, settings, &warnings);
-    let picture = film.develop();
-    let options = exr::Options { half: settings.half, ..exr::Options::default() };
-    let part = |product: &ProductDesc| picture.part(&scene.passes.layers_of(&product.passes));
-    let saved = match more.first() {
-        None => save(&out, &picture, &metadata, &options)?,
-        Some((_, product)) => save(&out, &part(product), &metadata, &options)?,
-    };
-    for (out, product) in more.iter().skip(1) {
-        save(out, &part(product), &metadata, &options)?;
-    }
-    if let Some(preview) = &preview {
-        let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
-        png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
-    }
-    if args.get_flag("strict") && bad.count > 0 {
-        bail!("--strict: {} samples were not finite; {} is written", bad.count, saved.display());
-    }
-    if let (true, Some(what)) = (args.get_flag("strict"), short.first()) {
-        bail!("--strict: {what}; {} is written", saved.display());
-    }
-    let seconds = clock(rendered.elapsed.as_secs_f64());
-    if rendered.interrupted {
-        say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
-        return Ok(Outcome::Interrupted);
-    }
-    rendering(false);
-    let [width, height] = scene.size;
-    let error = job::error_sentence(&rendered).map(|error| format!(", {error}")).unwrap_or_default();
-    let others = more.iter().skip(1).map(|(out, _)| format!(", {}", out.display())).collect::<String>();
-    let (out, camera) = (out.display(), &prepared.camera);
-    say::err(format!("{out}{others}: {width}x{height}, camera {camera}, {spp:.0} spp, {seconds}{error}"));
     Ok(Outcome::Done)
 }
 
-/// Where each picture goes that the scene wants, the first included; none where it is one alone, or the user has said
-/// otherwise.
-fn more_pictures(
-    args: &ArgMatches,
+/// Where the pictures of `shots` would go.
+fn names(shots: &[Shot]) -> String {
+    let outs = shots.iter().flat_map(|shot| &shot.pictures).map(|(out, _)| out.display().to_string());
+    outs.collect::<Vec<_>>().join(", ")
+}
+
+/// One render of a frame, and the pictures of it.
+struct Job<'a> {
+    args: &'a ArgMatches,
     frame: Option<f64>,
-    desc: &SceneDesc,
-    warnings: &mut Warnings,
-) -> anyhow::Result<Vec<(PathBuf, ProductDesc)>> {
-    let products = &desc.render.products;
-    if products.is_empty() || args.contains_id("debug-sample") {
-        return Ok(Vec::new());
+    shot: &'a Shot,
+    /// Where the first picture and its preview go, of the first render of a frame.
+    files: Option<&'a Files>,
+}
+
+impl Job<'_> {
+    /// `warnings` are those of the import.
+    fn render(
+        &self,
+        desc: SceneDesc,
+        settings: &Settings,
+        cache: &mut Cache,
+        mut warnings: Warnings,
+        told: &mut Warnings,
+    ) -> anyhow::Result<Outcome> {
+        let args = self.args;
+        let typed = args.get_one::<String>("camera").cloned();
+        let view = job::view(typed, args.get_one("size").copied(), &desc, &mut warnings);
+        let settings = &match args.value_source("passes") {
+            Some(ValueSource::CommandLine) => settings.clone(),
+            _ => job::with_own_passes(settings, &desc, &mut warnings),
+        };
+        let prepared = prepare_with(desc, &view, settings, cache)?;
+        warnings.extend(prepared.warnings.clone());
+        tell(&warnings, told);
+        if args.get_flag("strict") && warnings.faults() > 0 {
+            bail!("--strict: {} warnings about {}", warnings.faults(), scene::path(args).display());
+        }
+        if let Some(&[x, y, index]) = args.get_one::<[u64; 3]>("debug-sample") {
+            return debug_sample(&prepared.scene, settings, x, y, index);
+        }
+        let picture = self.shot.pictures.first().map(|(out, _)| out);
+        let Some(out) = self.files.map(|files| &files.out).or(picture) else { return Ok(Outcome::Done) };
+        rendering(true);
+        let kind = args.get_one::<String>("progress").expect("has a default");
+        let reporter = Reporter::new(kind, out, self.frame);
+        let rendered = penumbra::render::render(&prepared.scene, settings, &reporter);
+        reporter.finish();
+        self.write(out, &prepared, &rendered?, settings, &mut warnings)
     }
-    if args.contains_id("output") || args.value_source("passes") == Some(ValueSource::CommandLine) {
-        let what = format!("asks for {} pictures; one is written, as the command line says", products.len());
-        warnings.note(&desc.place, what);
-        return Ok(Vec::new());
+
+    /// Writes the pictures of what was rendered, and says so.
+    fn write(
+        &self,
+        out: &Path,
+        prepared: &Prepared,
+        rendered: &Rendered,
+        settings: &Settings,
+        warnings: &mut Warnings,
+    ) -> anyhow::Result<Outcome> {
+        let (args, scene, film) = (self.args, &prepared.scene, &rendered.film);
+        let place = Place::file(scene::path(args));
+        let bad = film.non_finite();
+        let mut late = Vec::new();
+        if let Some(SampleId { x, y, index }) = bad.first {
+            let count = bad.count;
+            late.push(format!("{count} samples were not finite and left out; the first: --debug-sample {x},{y},{index}"));
+        }
+        let short = job::shortfalls(rendered, settings);
+        late.extend(short.iter().cloned());
+        for what in late {
+            say::err(format!("warning: {what}"));
+            warnings.push(&place, what);
+        }
+        let name = scene::path(args).display().to_string();
+        let metadata = job::metadata(name, self.frame, prepared, rendered, settings, warnings);
+        let picture = film.develop();
+        let options = exr::Options { half: settings.half, ..exr::Options::default() };
+        let part = |product: &ProductDesc| picture.part(&scene.passes.layers_of(&product.passes));
+        let pictures = &self.shot.pictures;
+        let saved = match pictures.first() {
+            None => save(out, &picture, &metadata, &options)?,
+            Some((_, product)) => save(out, &part(product), &metadata, &options)?,
+        };
+        for (out, product) in pictures.iter().skip(1) {
+            save(out, &part(product), &metadata, &options)?;
+        }
+        if let Some(preview) = self.files.and_then(|files| files.preview.as_ref()) {
+            let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
+            png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
+        }
+        if args.get_flag("strict") && bad.count > 0 {
+            bail!("--strict: {} samples were not finite; {} is written", bad.count, saved.display());
+        }
+        if let (true, Some(what)) = (args.get_flag("strict"), short.first()) {
+            bail!("--strict: {what}; {} is written", saved.display());
+        }
+        let spp = job::samples_per_pixel(film);
+        if rendered.interrupted {
+            say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
+            return Ok(Outcome::Interrupted);
+        }
+        rendering(false);
+        let seconds = clock(rendered.elapsed.as_secs_f64());
+        let [width, height] = scene.size;
+        let error = job::error_sentence(rendered).map(|error| format!(", {error}")).unwrap_or_default();
+        let others = pictures.iter().skip(1).map(|(out, _)| format!(", {}", out.display())).collect::<String>();
+        let (out, camera) = (out.display(), &prepared.camera);
+        say::err(format!("{out}{others}: {width}x{height}, camera {camera}, {spp:.0} spp, {seconds}{error}"));
+        Ok(Outcome::Done)
     }
-    let (written, others): (Vec<_>, Vec<_>) =
-        products.iter().partition(|product| is_of_kind(Path::new(&*product.name), "exr"));
-    // Where none is left, that is no warning but the end.
-    for product in others.into_iter().filter(|_| !written.is_empty()) {
-        let what = format!("names the picture {}, but a render writes .exr files: it is left out", product.name);
-        warnings.push(&product.place, what);
-    }
-    let file = |product: &ProductDesc| {
-        let files = Files::of(args, frame, Some((&product.name, &product.place)))?;
-        Ok((files.out, product.clone()))
-    };
-    written.into_iter().map(file).collect()
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.

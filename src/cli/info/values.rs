@@ -5,8 +5,8 @@
 //! of glTF alike.
 
 use penumbra::desc::{
-    Attribute, CameraDesc, ConeDesc, DecayLaw, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
-    Motion, ProjectionDesc, RoundsDesc, SceneDesc, ShapeRef, ShapingDesc, Visibility,
+    Attribute, CameraDesc, ConeDesc, DecayLaw, FramingDesc, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
+    Motion, ProductDesc, ProjectionDesc, RenderDesc, RoundsDesc, SceneDesc, ShapeRef, ShapingDesc, Visibility,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DMat4};
@@ -23,19 +23,31 @@ pub fn describe(scene: &SceneDesc) -> Value {
         "lights": scene.lights.iter().map(|l| light(l, scene)).collect::<Vec<_>>(),
         "materials": scene.materials.iter().map(|m| materials::describe(m, scene)).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(camera).collect::<Vec<_>>(),
-        "render": {
-            "camera": scene.render.camera.as_deref(),
-            "resolution": scene.render.resolution,
-            "pixel_aspect": scene.render.pixel_aspect,
-            "conform": format!("{:?}", scene.render.conform).to_lowercase(),
-            "window": scene.render.window,
-            "passes": scene.render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
-            "product": scene.render.product.as_deref(),
-            "products": scene.render.products.iter().map(|product| json!({
-                "name": &*product.name,
-                "passes": product.passes.iter().map(|pass| &**pass).collect::<Vec<_>>(),
-            })).collect::<Vec<_>>(),
-        },
+        "render": render(&scene.render),
+    })
+}
+
+fn render(render: &RenderDesc) -> Value {
+    let mut value = framing(&render.framing);
+    value["passes"] = json!(render.passes.iter().map(|pass| &**pass).collect::<Vec<_>>());
+    value["product"] = json!(render.product.as_deref());
+    let product = |product: &ProductDesc| {
+        let mut value = framing(&product.framing);
+        value["name"] = json!(&*product.name);
+        value["passes"] = json!(product.passes.iter().map(|pass| &**pass).collect::<Vec<_>>());
+        value
+    };
+    value["products"] = json!(render.products.iter().map(product).collect::<Vec<_>>());
+    value
+}
+
+fn framing(framing: &FramingDesc) -> Value {
+    json!({
+        "camera": framing.camera.as_deref(),
+        "resolution": framing.resolution,
+        "pixel_aspect": framing.pixel_aspect,
+        "conform": format!("{:?}", framing.conform).to_lowercase(),
+        "window": framing.window,
     })
 }
 

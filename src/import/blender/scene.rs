@@ -210,7 +210,7 @@ impl BlenderScene {
         desc.render = document.render.desc();
         if let Some(data) = &document.camera {
             desc.cameras.push(camera::camera(data, &document.render, &place, warnings));
-            desc.render.camera = Some(data.name.as_str().into());
+            desc.render.framing.camera = Some(data.name.as_str().into());
         }
         let mut images = Images::new(&document.images, &self.images, &place, document.version);
         let uv_sets = self.uv_sets();

@@ -52,7 +52,10 @@ pub(super) fn camera(
     let camera = stamp.camera(data, &placed.world, &placed.place, warnings);
     let camera = camera.map_err(|what| warnings.push(&placed.place, format!("{NAME} is left out: {what}"))).ok()?;
     let camera = CameraDesc { name: placed.name.clone(), place: placed.place.clone(), ..camera };
-    let render = stamp.render().map(|render| RenderDesc { camera: placed.place.node.clone(), ..render });
+    let mut render = stamp.render();
+    if let Some(render) = &mut render {
+        render.framing.camera = placed.place.node.clone();
+    }
     Some((camera, render))
 }
 

@@ -89,7 +89,10 @@ pub(super) fn stamped(reading: &Reading<'_>, placed: &Placed) -> Option<(CameraD
             ..own
         },
     };
-    let render = stamp.render().map(|render| RenderDesc { camera: place.node.clone(), ..render });
+    let mut render = stamp.render();
+    if let Some(render) = &mut render {
+        render.framing.camera = place.node.clone();
+    }
     Some((camera, render))
 }
 

@@ -5,7 +5,7 @@ use openusd::sdf::Path;
 
 use super::render::is_authored;
 use super::values::Values;
-use crate::desc::{CameraDesc, Conform};
+use crate::desc::{Conform, EffectsOff, FramingDesc};
 
 /// Settings, and the product that is rendered.
 #[derive(Clone, Copy)]
@@ -14,31 +14,46 @@ pub(super) struct Said<'a> {
     pub product: Option<Values<'a>>,
 }
 
-/// Effects of the cameras that are off.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Off {
-    /// The shutter is open at the frame alone.
-    pub motion_blur: bool,
-    /// The shutter closes when it opens.
-    pub shutter: bool,
-    /// All is sharp.
-    pub depth_of_field: bool,
-}
-
 impl<'a> Said<'a> {
+    /// All that is said of what the picture shows.
+    pub fn framing(&self) -> FramingDesc {
+        FramingDesc {
+            camera: self.camera().map(|path| path.as_str().into()),
+            resolution: self.resolution(),
+            pixel_aspect: self.pixel_aspect(),
+            conform: self.conform(),
+            window: self.window(),
+            off: self.off(),
+        }
+    }
+
     /// Whose `name` counts.
-    pub fn of(&self, name: &str) -> Values<'a> {
+    fn of(&self, name: &str) -> Values<'a> {
         self.product.filter(|product| is_authored(product.prim, name)).unwrap_or(self.settings)
     }
 
     /// The first camera that is named.
-    pub fn camera(&self) -> Option<Path> {
+    fn camera(&self) -> Option<Path> {
         let of = |values: Values<'_>| values.targets("camera").into_iter().next();
         self.product.and_then(of).or_else(|| of(self.settings))
     }
 
+    /// Width and height in pixels.
+    fn resolution(&self) -> Option<[u32; 2]> {
+        let values = self.of("resolution");
+        let [width, height] =
+            values.reading.value::<openusd::gf::Vec2i>(values.prim, "resolution").map(<[i32; 2]>::from)?;
+        match (u32::try_from(width), u32::try_from(height)) {
+            (Ok(width), Ok(height)) if width > 0 && height > 0 => Some([width, height]),
+            _ => {
+                values.warn(format!("a resolution of {width} by {height} is no picture: it is ignored"));
+                None
+            }
+        }
+    }
+
     /// Width of a pixel over its height.
-    pub fn pixel_aspect(&self) -> f64 {
+    fn pixel_aspect(&self) -> f64 {
         let values = self.of("pixelAspectRatio");
         let aspect = values.number("pixelAspectRatio").unwrap_or(1.0);
         if aspect > 0.0 {
@@ -48,7 +63,7 @@ impl<'a> Said<'a> {
         1.0
     }
 
-    pub fn conform(&self) -> Conform {
+    fn conform(&self) -> Conform {
         let values = self.of("aspectRatioConformPolicy");
         match values.token("aspectRatioConformPolicy").as_deref() {
             None | Some("expandAperture") => Conform::Expand,
@@ -64,7 +79,7 @@ impl<'a> Said<'a> {
     }
 
     /// The part of the picture that is wanted, from the upper left corner; `None` for all of it.
-    pub fn window(&self) -> Option<[f64; 4]> {
+    fn window(&self) -> Option<[f64; 4]> {
         let values = self.of("dataWindowNDC");
         let window = values.reading.value::<[f32; 4]>(values.prim, "dataWindowNDC")?.map(f64::from);
         let [left, lower, right, upper] = window;
@@ -83,31 +98,13 @@ impl<'a> Said<'a> {
         (inside != [0.0, 0.0, 1.0, 1.0]).then_some([left, 1.0 - upper, right, 1.0 - lower])
     }
 
-    pub fn off(&self) -> Off {
+    /// What is off.
+    pub fn off(&self) -> EffectsOff {
         let flag = |name: &str| self.of(name).flag(name).unwrap_or(false);
-        Off {
+        EffectsOff {
             motion_blur: flag("disableMotionBlur"),
             shutter: flag("instantaneousShutter"),
             depth_of_field: flag("disableDepthOfField"),
-        }
-    }
-}
-
-impl Off {
-    /// True where no motion is to be read.
-    pub fn stands_still(self) -> bool {
-        self.motion_blur || self.shutter
-    }
-
-    /// Turns off what is off.
-    pub fn apply(self, camera: &mut CameraDesc) {
-        if self.depth_of_field {
-            camera.lens = None;
-        }
-        if self.motion_blur {
-            camera.shutter = [0.0; 2];
-        } else if self.shutter {
-            camera.shutter[1] = camera.shutter[0];
         }
     }
 }
@@ -131,14 +128,16 @@ mod tests {
                 uniform token aspectRatioConformPolicy = "cropAperture"
                 uniform float4 dataWindowNDC = (0.25, 0.5, 1, 1)
             }
-            def RenderProduct "P" { uniform float pixelAspectRatio = 2 }
-            def RenderProduct "Q" { uniform int2 resolution = (10, 10) }"#,
+            def RenderProduct "P" { token productName = "p.exr" uniform float pixelAspectRatio = 2 }
+            def RenderProduct "Q" { token productName = "q.exr" uniform int2 resolution = (10, 10) }"#,
         );
-        assert_eq!((desc.pixel_aspect, desc.conform), (2.0, Conform::Crop));
+        let framing = desc.framing;
+        assert_eq!((framing.pixel_aspect, framing.conform), (2.0, Conform::Crop));
         // From below as it stands there, from above here.
-        assert_eq!(desc.window, Some([0.25, 0.0, 1.0, 0.5]));
-        assert!(said.contains("/Q: is not rendered: its resolution, pixelAspectRatio are not those of /P"), "{said}");
-        assert_eq!(said.lines().count(), 1, "{said}");
+        assert_eq!(framing.window, Some([0.25, 0.0, 1.0, 0.5]));
+        let [p, q] = &desc.products[..] else { panic!("{:?}", desc.products) };
+        let other = FramingDesc { resolution: Some([10, 10]), pixel_aspect: 3.0, ..framing.clone() };
+        assert_eq!((&p.framing, &q.framing, &*said), (&framing, &other, ""));
     }
 
     #[test]
@@ -151,35 +150,37 @@ mod tests {
         ] {
             let (desc, said) = render(NAMED, &format!("def RenderSettings \"S\" {{ uniform {line} }}"));
             assert!(said.contains(what), "{said}");
-            assert_eq!((desc.window, desc.pixel_aspect, desc.conform), (window, 1.0, Conform::Expand));
+            let framing = desc.framing;
+            assert_eq!((framing.window, framing.pixel_aspect, framing.conform), (window, 1.0, Conform::Expand));
         }
     }
 
-    /// A camera that blurs, with settings that turn something off.
-    fn camera_with(line: &str) -> ([f64; 2], bool) {
+    /// The effects that settings turn off with `line`, and whether a camera that blurs moves.
+    fn off_by(line: &str) -> (EffectsOff, bool) {
         let text = format!(
             r#"#usda 1.0
             ( {NAMED} )
             def RenderSettings "S" {{ uniform bool {line} = 1 }}
             def Camera "C" {{
-                float fStop = 2
-                float focusDistance = 5
                 double shutter:open = -0.25
                 double shutter:close = 0.5
+                double3 xformOp:translate.timeSamples = {{ 0: (0, 0, 0), 2: (1, 0, 0) }}
+                uniform token[] xformOpOrder = ["xformOp:translate"]
             }}"#
         );
         let mut file = tempfile::Builder::new().suffix(".usda").tempfile().unwrap();
         std::io::Write::write_all(&mut file, text.as_bytes()).unwrap();
         let options = ImportOptions { frame: Some(1.0), ..ImportOptions::default() };
         let scene = crate::import::scene(file.path(), &options, &mut Warnings::new()).unwrap();
-        (scene.cameras[0].shutter, scene.cameras[0].lens.is_some())
+        (scene.render.framing.off, !scene.cameras[0].motion.is_empty())
     }
 
     #[test]
     fn settings_turn_effects_of_cameras_off() {
-        assert_eq!(camera_with("any"), ([-0.25, 0.5], true));
-        assert_eq!(camera_with("disableDepthOfField"), ([-0.25, 0.5], false));
-        assert_eq!(camera_with("disableMotionBlur"), ([0.0, 0.0], true));
-        assert_eq!(camera_with("instantaneousShutter"), ([-0.25, -0.25], true));
+        let none = EffectsOff::default();
+        assert_eq!(off_by("any"), (none, true));
+        assert_eq!(off_by("disableDepthOfField"), (EffectsOff { depth_of_field: true, ..none }, true));
+        assert_eq!(off_by("disableMotionBlur"), (EffectsOff { motion_blur: true, ..none }, false));
+        assert_eq!(off_by("instantaneousShutter"), (EffectsOff { shutter: true, ..none }, false));
     }
 }

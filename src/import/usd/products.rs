@@ -1,21 +1,22 @@
-//! UsdRender products: one render gives the picture of each that frames the scene as the first one does.
+//! UsdRender products: the pictures that a stage asks for. Those that show the same are made by one render.
 
 use std::sync::Arc;
 
 use openusd::sdf::Path;
 use openusd::usd::Prim;
 
-use super::frame::{Off, Said};
-use super::render::resolution;
+use super::frame::Said;
 use super::values::Values;
 use super::vars;
-use crate::desc::{Conform, ProductDesc};
+use crate::desc::{FramingDesc, ProductDesc};
 use crate::error::Place;
 
 /// What the products of some settings ask for.
 #[derive(Default)]
 pub(super) struct Products {
-    /// The passes of all pictures, each once.
+    /// What the first picture shows.
+    pub framing: FramingDesc,
+    /// The passes of all pictures that show the same, each once.
     pub passes: Vec<Arc<str>>,
     /// Name of the first picture.
     pub name: Option<Arc<str>>,
@@ -27,44 +28,75 @@ pub(super) struct Products {
 
 /// The pictures of `products`, those of `settings`.
 pub(super) fn of(settings: Values<'_>, products: &[(Path, Prim)]) -> Products {
-    let mut all = products.iter().map(|(path, prim)| Values { prim, path, ..settings });
-    let Some(first) = all.next() else { return Products::default() };
-    let frame = Frame::of(settings, first);
-    let mut pictures = vec![Picture::of(first)];
-    for product in all {
-        let others = frame.differences(&Frame::of(settings, product));
-        if !others.is_empty() {
-            let (what, are) = (others.join(", "), if others.len() > 1 { "are not those" } else { "is not that" });
-            product.warn(format!("is not rendered: its {what} {are} of {}", first.path));
-            continue;
-        }
-        let picture = Picture::of(product);
-        if picture.name.is_none() {
-            product.warn(format!("names no picture of its own: its passes go to that of {}", pictures[0].product.path));
-        }
-        match pictures.iter().position(|known| known.name == picture.name || picture.name.is_none()) {
-            Some(known) => picture.passes.iter().for_each(|pass| add(&mut pictures[known].passes, pass)),
-            // What has no name goes with the first that has one.
-            None if pictures[0].name.is_none() => {
-                product.warn(format!("has the passes of {}, which names no picture, in its own", first.path));
-                picture.passes.iter().for_each(|pass| add(&mut pictures[0].passes, pass));
-                (pictures[0].name, pictures[0].place) = (picture.name, picture.place);
-            }
-            None => pictures.push(picture),
+    let mut all = products.iter().map(|(path, prim)| Picture::of(settings, Values { prim, path, ..settings }));
+    let Some(first) = all.next() else {
+        let framing = Said { settings, product: None }.framing();
+        return Products { framing, ..Products::default() };
+    };
+    let mut pictures = vec![first];
+    for picture in all {
+        add_picture(&mut pictures, picture);
+    }
+    if pictures.len() > 1 && pictures[0].name.is_none() {
+        let unnamed = pictures.remove(0);
+        let other = pictures[0].differences(&unnamed);
+        unnamed.product.warn(format!("is not rendered: it names no picture, and {other}"));
+    }
+    if pictures.len() > 1 {
+        for picture in pictures.iter_mut().filter(|picture| picture.passes.is_empty()) {
+            picture.passes.push("combined".into());
         }
     }
     let mut passes = Vec::new();
-    let several = pictures.len() > 1;
-    for picture in &mut pictures {
-        if several && picture.passes.is_empty() {
-            picture.passes.push("combined".into());
-        }
-        picture.passes.iter().for_each(|pass| add(&mut passes, pass));
-    }
+    let framing = pictures[0].framing.clone();
+    let same = pictures.iter().filter(|picture| picture.framing == framing);
+    same.flat_map(|picture| &picture.passes).for_each(|pass| add(&mut passes, pass));
     let (name, place) = (pictures[0].name.clone(), pictures[0].place.clone());
-    let named = |Picture { name, place, passes, .. }: Picture<'_>| Some(ProductDesc { name: name?, place, passes });
+    let named = |Picture { name, place, passes, framing, .. }: Picture<'_>| {
+        Some(ProductDesc { name: name?, place, passes, framing })
+    };
+    let several = pictures.len() > 1;
     let pictures = if several { pictures.into_iter().filter_map(named).collect() } else { Vec::new() };
-    Products { passes, name, place, pictures }
+    Products { framing, passes, name, place, pictures }
+}
+
+/// Adds `picture`, or its passes to one of `pictures` that shows the same under its name. What names none goes with
+/// what does.
+fn add_picture<'a>(pictures: &mut Vec<Picture<'a>>, picture: Picture<'a>) {
+    let product = picture.product;
+    let shows_same = |known: &Picture<'_>| known.framing == picture.framing;
+    let Some(name) = picture.name.clone() else {
+        match pictures.iter_mut().find(|known| shows_same(known)) {
+            Some(known) => {
+                let other = &known.product.path;
+                product.warn(format!("names no picture of its own: its passes go to that of {other}"));
+                picture.passes.iter().for_each(|pass| add(&mut known.passes, pass));
+            }
+            None => {
+                let other = pictures[0].differences(&picture);
+                product.warn(format!("is not rendered: it names no picture, and {other}"));
+            }
+        }
+        return;
+    };
+    if let Some(known) = pictures.iter_mut().find(|known| known.name.as_ref() == Some(&name)) {
+        if known.framing == picture.framing {
+            picture.passes.iter().for_each(|pass| add(&mut known.passes, pass));
+        } else {
+            let (path, other) = (known.product.path, known.differences(&picture));
+            product.warn(format!("is not rendered: its picture {name} is that of {path}, and {other}"));
+        }
+        return;
+    }
+    // What has no name goes with the first that has one.
+    if pictures[0].name.is_none() && shows_same(&pictures[0]) {
+        let first = &mut pictures[0];
+        product.warn(format!("has the passes of {}, which names no picture, in its own", first.product.path));
+        picture.passes.iter().for_each(|pass| add(&mut first.passes, pass));
+        (first.name, first.place) = (picture.name, picture.place);
+        return;
+    }
+    pictures.push(picture);
 }
 
 /// A picture, and the product that asks for it first.
@@ -74,15 +106,40 @@ struct Picture<'a> {
     /// Where it has that from.
     place: Place,
     passes: Vec<Arc<str>>,
+    framing: FramingDesc,
 }
 
 impl<'a> Picture<'a> {
-    fn of(product: Values<'a>) -> Self {
+    fn of(settings: Values<'a>, product: Values<'a>) -> Self {
         let name = product.token("productName").filter(|name| !name.is_empty()).map(Into::into);
         if product.token("productType").is_some_and(|kind| kind == "deepRaster") {
             product.warn("deep pictures are not written: it becomes a flat one");
         }
-        Self { product, name, place: product.reading.place_of(product.path), passes: vars::passes(&product) }
+        Self {
+            product,
+            name,
+            place: product.reading.place_of(product.path),
+            passes: vars::passes(&product),
+            framing: Said { settings, product: Some(product) }.framing(),
+        }
+    }
+
+    /// What of `other` is not as here, in words.
+    fn differences(&self, other: &Self) -> String {
+        let (ours, theirs) = (&self.framing, &other.framing);
+        let (off, others_off) = (ours.off, theirs.off);
+        let all = [
+            ("camera", ours.camera != theirs.camera),
+            ("resolution", ours.resolution != theirs.resolution),
+            ("pixelAspectRatio", ours.pixel_aspect != theirs.pixel_aspect),
+            ("aspectRatioConformPolicy", ours.conform != theirs.conform),
+            ("dataWindowNDC", ours.window != theirs.window),
+            ("motion blur", off.motion_blur != others_off.motion_blur || off.shutter != others_off.shutter),
+            ("depth of field", off.depth_of_field != others_off.depth_of_field),
+        ];
+        let names: Vec<&str> = all.into_iter().filter(|(_, differs)| *differs).map(|(name, _)| name).collect();
+        let are = if names.len() > 1 { "are not those" } else { "is not that" };
+        format!("its {} {are} of {}", names.join(", "), self.product.path)
     }
 }
 
@@ -90,44 +147,6 @@ impl<'a> Picture<'a> {
 fn add(passes: &mut Vec<Arc<str>>, pass: &Arc<str>) {
     if !passes.contains(pass) {
         passes.push(pass.clone());
-    }
-}
-
-/// How a product frames the scene.
-struct Frame {
-    camera: Option<Path>,
-    resolution: Option<[u32; 2]>,
-    pixel_aspect: f64,
-    conform: Conform,
-    window: Option<[f64; 4]>,
-    off: Off,
-}
-
-impl Frame {
-    fn of(settings: Values<'_>, product: Values<'_>) -> Self {
-        let said = Said { settings, product: Some(product) };
-        Self {
-            camera: said.camera(),
-            resolution: resolution(&said.of("resolution")),
-            pixel_aspect: said.pixel_aspect(),
-            conform: said.conform(),
-            window: said.window(),
-            off: said.off(),
-        }
-    }
-
-    /// What of `other` is not the same.
-    fn differences(&self, other: &Self) -> Vec<&'static str> {
-        let all = [
-            ("camera", self.camera != other.camera),
-            ("resolution", self.resolution != other.resolution),
-            ("pixelAspectRatio", self.pixel_aspect != other.pixel_aspect),
-            ("aspectRatioConformPolicy", self.conform != other.conform),
-            ("dataWindowNDC", self.window != other.window),
-            ("motion blur", self.off.motion_blur != other.off.motion_blur || self.off.shutter != other.off.shutter),
-            ("depth of field", self.off.depth_of_field != other.off.depth_of_field),
-        ];
-        all.into_iter().filter(|(_, differs)| *differs).map(|(name, _)| name).collect()
     }
 }
 
@@ -169,14 +188,36 @@ mod tests {
     }
 
     #[test]
-    fn products_that_frame_otherwise_are_told_and_left_out() {
+    fn products_that_frame_otherwise_have_pictures_of_their_own() {
+        let (desc, said) = render(
+            NAMED,
+            &prims(
+                r#"def RenderProduct "A" { token productName = "a.exr" rel orderedVars = </Ci> }
+                def RenderProduct "B" { token productName = "b.exr" rel orderedVars = </N>
+                    rel camera = </Other> uniform int2 resolution = (9, 9) }
+                def RenderProduct "C" { token productName = "c.exr" uniform bool disableDepthOfField = 1 }"#,
+            ),
+        );
+        assert_eq!((desc.passes.join(" "), &*said), ("combined".to_string(), ""));
+        let [a, b, c] = &desc.products[..] else { panic!("{:?}", desc.products) };
+        assert_eq!(a.framing, desc.framing);
+        assert_eq!((a.framing.camera.as_deref(), a.framing.resolution), (Some("/Cam"), Some([64, 32])));
+        assert_eq!((b.framing.camera.as_deref(), b.framing.resolution), (Some("/Other"), Some([9, 9])));
+        assert_eq!((b.passes.join(" "), c.passes.join(" ")), ("normal".to_string(), "combined".to_string()));
+        assert!(c.framing.off.depth_of_field && !a.framing.off.depth_of_field);
+    }
+
+    #[test]
+    fn products_that_frame_otherwise_need_a_name_of_their_own() {
         let (pictures, passes, said) =
             of(r#"def RenderProduct "A" { token productName = "a.exr" rel orderedVars = </Ci> }
             def RenderProduct "B" { rel orderedVars = </N> rel camera = </Other> uniform int2 resolution = (9, 9) }
-            def RenderProduct "C" { token productName = "c.exr" uniform bool disableDepthOfField = 1 }"#);
+            def RenderProduct "C" { token productName = "a.exr" uniform bool disableDepthOfField = 1 }"#);
         assert_eq!((pictures.len(), &*passes), (0, "combined"));
-        assert!(said.contains("/B: is not rendered: its camera, resolution are not those of /A"), "{said}");
-        assert!(said.contains("/C: is not rendered: its depth of field is not that of /A"), "{said}");
+        let what = "/B: is not rendered: it names no picture, and its camera, resolution are not those of /A";
+        assert!(said.contains(what), "{said}");
+        let what = "/C: is not rendered: its picture a.exr is that of /A, and its depth of field is not that of /A";
+        assert!(said.contains(what), "{said}");
         assert_eq!(said.lines().count(), 2, "{said}");
     }
 

@@ -5,8 +5,8 @@ use openusd::sdf::{self, Value};
 use openusd::tf::Token;
 use openusd::usd::Prim;
 
-use super::frame::{Off, Said};
-use super::products;
+use super::frame::Said;
+use super::products::{self, Products};
 use super::stage::Reading;
 use super::values::Values;
 use crate::desc::RenderDesc;
@@ -16,20 +16,10 @@ use crate::import::Purpose;
 pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
     let Some((path, settings)) = settings(reading) else { return RenderDesc::default() };
     let values = Values { reading, prim: &settings, path: &path };
-    let products: Vec<(sdf::Path, Prim)> = values
-        .targets("products")
-        .into_iter()
-        .filter_map(|path| {
-            let found = reading.stage.prim(path.clone()).ok().filter(|prim| is_a(prim, "RenderProduct"));
-            if found.is_none() {
-                values.warn(format!("product {path} is no RenderProduct: it is left out"));
-            }
-            Some((path, found?))
-        })
-        .collect();
-    let product = products.first().map(|(path, prim)| Values { reading, prim, path });
-    let said = Said { settings: values, product };
-    let products = products::of(values, &products);
+    let products = products(&values, |path| {
+        values.warn(format!("product {path} is no RenderProduct: it is left out"));
+    });
+    let Products { passes, framing, name, place, pictures } = products::of(values, &products);
     if let Some(purposes) = tokens(&values, "includedPurposes") {
         if !purposes.iter().any(|purpose| purpose == "default") && reading.options.purposes.is_none() {
             values.warn("includedPurposes leaves out default: what has no other purpose is shown all the same");
@@ -39,29 +29,38 @@ pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
         }
     }
     RenderDesc {
-        camera: said.camera().map(|path| path.as_str().into()),
-        resolution: resolution(&said.of("resolution")),
-        pixel_aspect: said.pixel_aspect(),
-        conform: said.conform(),
-        window: said.window(),
-        passes: products.passes,
-        product: products.name,
-        product_place: products.place,
-        products: products.pictures,
+        framing,
+        passes,
+        product: name,
+        product_place: place,
+        products: pictures,
         ..RenderDesc::default()
     }
 }
 
-/// What the settings, or their first product, turn off.
-pub(super) fn off(reading: &Reading<'_>) -> Off {
-    let Some((path, settings)) = settings(reading) else { return Off::default() };
-    let values = Values { reading, prim: &settings, path: &path };
-    let found = values.targets("products").into_iter().find_map(|path| {
-        let prim = reading.stage.prim(path.clone()).ok().filter(|prim| is_a(prim, "RenderProduct"))?;
-        Some((path, prim))
+/// The products of `settings`; what is named and is none is handed to `lost`.
+fn products(settings: &Values<'_>, lost: impl Fn(&sdf::Path)) -> Vec<(sdf::Path, Prim)> {
+    let stage = &settings.reading.stage;
+    let found = settings.targets("products").into_iter().filter_map(|path| {
+        let found = stage.prim(path.clone()).ok().filter(|prim| is_a(prim, "RenderProduct"));
+        if found.is_none() {
+            lost(&path);
+        }
+        Some((path, found?))
     });
-    let product = found.as_ref().map(|(path, prim)| Values { reading, prim, path });
-    Said { settings: values, product }.off()
+    found.collect()
+}
+
+/// True where no picture shows that anything moves.
+pub(super) fn stands_still(reading: &Reading<'_>) -> bool {
+    let Some((path, settings)) = settings(reading) else { return false };
+    let values = Values { reading, prim: &settings, path: &path };
+    let products = products(&values, |_| ());
+    let of = |product| Said { settings: values, product }.off().stands_still();
+    if products.is_empty() {
+        return of(None);
+    }
+    products.iter().all(|(path, prim)| of(Some(Values { reading, prim, path })))
 }
 
 /// What the settings say of purposes, or their fallbacks.
@@ -142,18 +141,6 @@ pub(super) fn is_authored(prim: &Prim, name: &str) -> bool {
     prim.attribute(name).has_authored_value().unwrap_or(false)
 }
 
-pub(super) fn resolution(values: &Values<'_>) -> Option<[u32; 2]> {
-    let [width, height] =
-        values.reading.value::<openusd::gf::Vec2i>(values.prim, "resolution").map(<[i32; 2]>::from)?;
-    match (u32::try_from(width), u32::try_from(height)) {
-        (Ok(width), Ok(height)) if width > 0 && height > 0 => Some([width, height]),
-        _ => {
-            values.warn(format!("a resolution of {width} by {height} is no picture: it is ignored"));
-            None
-        }
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::light::testing::Stage;
@@ -194,14 +181,14 @@ pub(super) mod tests {
     #[test]
     fn settings_products_and_vars_are_read() {
         let (desc, said) = render(r#"renderSettingsPrimPath = "/Render/Main""#, SETTINGS);
-        assert_eq!(desc.camera.as_deref(), Some("/World/Cam"));
-        assert_eq!((desc.resolution, desc.pixel_aspect), (Some([320, 180]), 2.0));
+        assert_eq!(desc.framing.camera.as_deref(), Some("/World/Cam"));
+        assert_eq!((desc.framing.resolution, desc.framing.pixel_aspect), (Some([320, 180]), 2.0));
         assert_eq!(desc.product.as_deref(), Some("out/beauty.exr"));
         let passes: Vec<&str> = desc.passes.iter().map(|pass| &**pass).collect();
         assert_eq!(passes, ["combined", "diffuse_direct", "depth", "shadow_key"]);
         for what in [
             "/Render/Main: product /Any is no RenderProduct",
-            "/Render/Data: is not rendered: its resolution is not that of /Render/Beauty",
+            "/Render/Data: is not rendered: it names no picture, and its resolution is not that of /Render/Beauty",
             "/Render/Vars/Diffuse: rendered as diffuse_direct",
             "/Render/Vars/Odd: there is no pass for \"wobble\"",
             "/Render/Vars: no RenderVar",
@@ -222,6 +209,6 @@ pub(super) mod tests {
     #[test]
     fn a_resolution_that_is_not_authored_is_the_fallback() {
         let (desc, said) = render(r#"renderSettingsPrimPath = "/S""#, "def RenderSettings \"S\" {}");
-        assert_eq!((desc.resolution, said.as_str()), (Some([2048, 1080]), ""));
+        assert_eq!((desc.framing.resolution, said.as_str()), (Some([2048, 1080]), ""));
     }
 }

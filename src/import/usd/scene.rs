@@ -65,7 +65,7 @@ fn gather(reading: &Reading<'_>) -> Haul {
 
 /// From when to when a camera's shutter is open, in time codes after the frame.
 fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
-    if render::off(reading).stands_still() {
+    if render::stands_still(reading) {
         return None;
     }
     let of = |found: &Found| {
@@ -119,8 +119,6 @@ fn lights_and_cameras(reading: &Reading<'_>, haul: &Haul, images: &mut Images, s
         }
     }
     scene.lights.extend(worlds.domes);
-    let off = render::off(reading);
-    scene.cameras.iter_mut().for_each(|camera| off.apply(camera));
     if !lost.is_empty() {
         let lost: Vec<&str> = lost.into_iter().collect();
         let what = format!(

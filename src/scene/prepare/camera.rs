@@ -41,7 +41,9 @@ pub fn choose(desc: &SceneDesc, view: &View, warnings: &mut Warnings) -> Result<
         warnings.push(&desc.place, "no camera in the scene: using one that frames it");
         framing_camera(desc, f64::from(size[0]) / f64::from(size[1]))
     });
-    Ok((usable(camera, desc, size, warnings), size))
+    let mut camera = usable(camera, desc, size, warnings);
+    desc.render.framing.off.apply(&mut camera);
+    Ok((camera, size))
 }
 
 fn aspect_of(camera: &CameraDesc) -> Option<f64> {
@@ -116,9 +118,9 @@ fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) 
         clip_near: desc.clip_near as f32,
         clip_far: desc.clip_far as f32,
     };
-    let aspect = f64::from(size[0]) / f64::from(size[1]) * render.pixel_aspect;
+    let aspect = f64::from(size[0]) / f64::from(size[1]) * render.framing.pixel_aspect;
     let corner = render.part(size).map_or([0.0; 2], |[left, top, ..]| [left as f32, top as f32]);
-    let projection = projection(desc, view, size.map(|n| n as f32), aspect, render.conform);
+    let projection = projection(desc, view, size.map(|n| n as f32), aspect, render.framing.conform);
     let lens = desc.lens.and_then(|lens| usable_lens(&lens));
     let lens = lens.filter(|_| !matches!(projection, Projection::Panorama(_)));
     Camera { projection, lens, corner }
@@ -234,7 +236,8 @@ mod tests {
         let seen = |half: [f64; 2], conform| {
             let [half_width, half_height] = half;
             let projection = ProjectionDesc::Orthographic { half_width, half_height };
-            let render = RenderDesc { conform, ..RenderDesc::default() };
+            let framing = FramingDesc { conform, ..FramingDesc::default() };
+            let render = RenderDesc { framing, ..RenderDesc::default() };
             let camera = still(&desc(projection, [0.0; 2]), &render, [100, 100], DVec3::ZERO);
             let o = camera.ray(100.0, 0.0).ray.o;
             [o.x, o.y]

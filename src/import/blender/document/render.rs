@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::desc::{AovDesc, AovKind, RenderDesc};
+use crate::desc::{AovDesc, AovKind, FramingDesc, RenderDesc};
 
 /// Settings that are the scene's and not the engine's.
 #[derive(Clone, Debug, Deserialize)]
@@ -47,8 +47,11 @@ impl RenderData {
         let [x, y] = self.pixel_aspect;
         let aspect = x / y;
         RenderDesc {
-            resolution: Some(self.size),
-            pixel_aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
+            framing: FramingDesc {
+                resolution: Some(self.size),
+                pixel_aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
+                ..FramingDesc::default()
+            },
             crop: self.border.map(|[left, lower, right, upper]| {
                 let height = self.size[1];
                 [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
