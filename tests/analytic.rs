@@ -390,6 +390,9 @@ fn passes_recombine_to_the_picture() {
     let lobes = ["Diffuse", "Glossy", "Transmission"].map(|lobe| {
         [layer(&format!("{lobe} Color")), layer(&format!("{lobe} Direct")), layer(&format!("{lobe} Indirect"))]
     });
+    let lights = ["Diffuse", "Glossy", "Transmission"].map(|lobe| {
+        ["Light", "Light Direct", "Light Indirect"].map(|part| layer(&format!("{lobe} {part}")))
+    });
     for pixel in 0..24 * 24 {
         for c in 0..3 {
             let i = 3 * pixel + c;
@@ -397,6 +400,12 @@ fn passes_recombine_to_the_picture() {
             let sum = sum + layer("Emission")[i] + layer("Environment")[i];
             let value = combined[4 * pixel + c];
             assert!((sum - value).abs() <= 1e-5 * value.max(1.0), "pixel {pixel}: {sum} and {value}");
+            for ([color, direct, indirect], light) in lobes.iter().zip(&lights) {
+                let expected = [direct[i] + indirect[i], direct[i], indirect[i]].map(|part| color[i] * part);
+                for (light, expected) in light.iter().zip(expected) {
+                    assert!((light[i] - expected).abs() <= 1e-5 * expected, "pixel {pixel}: {} {expected}", light[i]);
+                }
+            }
             let product = layer("Shadow")[i] * layer("Diffuse Direct Unshadowed")[i];
             let direct = layer("Diffuse Direct")[i];
             assert!((product - direct).abs() <= 1e-5 * direct.max(1e-3), "pixel {pixel}: {product} and {direct}");

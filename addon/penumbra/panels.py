@@ -241,7 +241,9 @@ class PENUMBRA_PT_passes_data(_Passes, bpy.types.Panel):
 class PENUMBRA_PT_passes_light(_Passes, bpy.types.Panel):
     bl_label = "Light"
     BOXES = (
-        *((lobe.capitalize(), tuple((f"{lobe}_{part}", part.capitalize()) for part in ("direct", "indirect", "color")))
+        *((lobe.capitalize(), tuple((f"{lobe}_{part}", part.replace("_", " ").title())
+                                    for part in ("direct", "indirect", "color", "light", "light_direct",
+                                                 "light_indirect")))
           for lobe in ("diffuse", "glossy", "transmission")),
         ("Other", (("emit", "Emission"), ("environment", "Environment"))),
     )

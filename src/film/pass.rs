@@ -82,6 +82,11 @@ impl Means<'_> {
         std::array::from_fn(|i| if b[i] == 0.0 { 0.0 } else { a[i] / b[i] })
     }
 
+    /// Sum of the means.
+    fn sum<const N: usize>(&self, all: [Quantity; N]) -> [f64; 4] {
+        all.into_iter().map(|q| self.of(q)).fold([0.0; 4], |sum, mean| std::array::from_fn(|i| sum[i] + mean[i]))
+    }
+
     /// The shadow of all lights.
     fn whole_shadow(&self) -> [f64; 4] {
         self.shadow([[Q::DiffuseDirect, Q::Unshadowed], [Q::IrradianceShadowed, Q::IrradianceUnshadowed]])
@@ -231,6 +236,27 @@ pub static PASSES: &[Pass] = &[
         "bounced light through the surface, divided by the color"),
     pixel("transmission_color", "Transmission Color", "RGB", Color, &[Q::TransmissionColor], |m| m.of(Q::TransmissionColor),
         "transmission albedo times coverage"),
+    pixel("diffuse_light", "Diffuse Light", "RGB", Color, &[Q::DiffuseDirect, Q::DiffuseIndirect],
+        |m| m.sum([Q::DiffuseDirect, Q::DiffuseIndirect]),
+        "all light by diffuse reflection, with the color: what it adds to Combined"),
+    pixel("diffuse_light_direct", "Diffuse Light Direct", "RGB", Color, &[Q::DiffuseDirect], |m| m.of(Q::DiffuseDirect),
+        "the part of it that is direct light: Diffuse Color x Diffuse Direct"),
+    pixel("diffuse_light_indirect", "Diffuse Light Indirect", "RGB", Color, &[Q::DiffuseIndirect], |m| m.of(Q::DiffuseIndirect),
+        "the part of it that is bounced light: Diffuse Color x Diffuse Indirect"),
+    pixel("glossy_light", "Glossy Light", "RGB", Color, &[Q::GlossyDirect, Q::GlossyIndirect],
+        |m| m.sum([Q::GlossyDirect, Q::GlossyIndirect]),
+        "all light by glossy reflection, with the color: what it adds to Combined"),
+    pixel("glossy_light_direct", "Glossy Light Direct", "RGB", Color, &[Q::GlossyDirect], |m| m.of(Q::GlossyDirect),
+        "the part of it that is direct light: Glossy Color x Glossy Direct"),
+    pixel("glossy_light_indirect", "Glossy Light Indirect", "RGB", Color, &[Q::GlossyIndirect], |m| m.of(Q::GlossyIndirect),
+        "the part of it that is bounced light: Glossy Color x Glossy Indirect"),
+    pixel("transmission_light", "Transmission Light", "RGB", Color, &[Q::TransmissionDirect, Q::TransmissionIndirect],
+        |m| m.sum([Q::TransmissionDirect, Q::TransmissionIndirect]),
+        "all light through the surface, with the color: what it adds to Combined"),
+    pixel("transmission_light_direct", "Transmission Light Direct", "RGB", Color, &[Q::TransmissionDirect], |m| m.of(Q::TransmissionDirect),
+        "the part of it that is direct light: Transmission Color x Transmission Direct"),
+    pixel("transmission_light_indirect", "Transmission Light Indirect", "RGB", Color, &[Q::TransmissionIndirect], |m| m.of(Q::TransmissionIndirect),
+        "the part of it that is bounced light: Transmission Color x Transmission Indirect"),
     pixel("emission", "Emission", "RGB", Color, &[Q::Emission], |m| m.of(Q::Emission),
         "emission of what the camera sees"),
     pixel("environment", "Environment", "RGB", Color, &[Q::Environment], |m| m.of(Q::Environment),

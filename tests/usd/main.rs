@@ -12,6 +12,7 @@ mod instances;
 mod large;
 mod layers;
 mod mutation;
+mod pictures;
 mod primvars;
 #[path = "../support/rng.rs"]
 mod rng;

@@ -46,6 +46,7 @@ mod scene;
 mod schemas;
 mod shape;
 mod shapes;
+mod shown;
 mod skel;
 mod spline;
 mod stage;

@@ -7,8 +7,8 @@ use openusd::usd::Prim;
 
 use super::frame::Said;
 use super::values::Values;
-use super::vars;
-use crate::desc::{FramingDesc, ProductDesc};
+use super::vars::Vars;
+use crate::desc::{AovDesc, FramingDesc, ProductDesc};
 use crate::error::Place;
 
 /// What the products of some settings ask for.
@@ -24,6 +24,8 @@ pub(super) struct Products {
     pub place: Place,
     /// Each picture, where there is more than one.
     pub pictures: Vec<ProductDesc>,
+    /// Primvars that pictures show, and where that is said.
+    pub shown: Vec<(AovDesc, Place)>,
 }
 
 /// The pictures of `products`, those of `settings`.
@@ -34,7 +36,17 @@ pub(super) fn of(settings: Values<'_>, products: &[(Path, Prim)]) -> Products {
         return Products { framing, ..Products::default() };
     };
     let mut pictures = vec![first];
-    for picture in all {
+    let mut shown: Vec<(AovDesc, Place)> = Vec::new();
+    let mut show = |picture: &mut Picture<'_>| {
+        for (aov, place) in picture.shown.drain(..) {
+            if !shown.iter().any(|(known, _)| known.name == aov.name) {
+                shown.push((aov, place));
+            }
+        }
+    };
+    show(&mut pictures[0]);
+    for mut picture in all {
+        show(&mut picture);
         add_picture(&mut pictures, picture);
     }
     if pictures.len() > 1 && pictures[0].name.is_none() {
@@ -57,7 +69,7 @@ pub(super) fn of(settings: Values<'_>, products: &[(Path, Prim)]) -> Products {
     };
     let several = pictures.len() > 1;
     let pictures = if several { pictures.into_iter().filter_map(named).collect() } else { Vec::new() };
-    Products { framing, passes, name, place, pictures }
+    Products { framing, passes, name, place, pictures, shown }
 }
 
 /// Adds `picture`, or its passes to one of `pictures` that shows the same under its name. What names none goes with
@@ -106,6 +118,7 @@ struct Picture<'a> {
     /// Where it has that from.
     place: Place,
     passes: Vec<Arc<str>>,
+    shown: Vec<(AovDesc, Place)>,
     framing: FramingDesc,
 }
 
@@ -115,11 +128,13 @@ impl<'a> Picture<'a> {
         if product.token("productType").is_some_and(|kind| kind == "deepRaster") {
             product.warn("deep pictures are not written: it becomes a flat one");
         }
+        let vars = Vars::of(&product);
         Self {
             product,
             name,
             place: product.reading.place_of(product.path),
-            passes: vars::passes(&product),
+            passes: vars.passes,
+            shown: vars.shown,
             framing: Said { settings, product: Some(product) }.framing(),
         }
     }

@@ -10,32 +10,36 @@ use super::products::{self, Products};
 use super::stage::Reading;
 use super::values::Values;
 use crate::desc::RenderDesc;
+use crate::error::Place;
 use crate::import::Purpose;
 
-/// What the stage says of its own render.
-pub(super) fn read(reading: &Reading<'_>) -> RenderDesc {
-    let Some((path, settings)) = settings(reading) else { return RenderDesc::default() };
+/// What the stage says of its own render, and where it asks for each of the AOVs.
+pub(super) fn read(reading: &Reading<'_>) -> (RenderDesc, Vec<Place>) {
+    let Some((path, settings)) = settings(reading) else { return Default::default() };
     let values = Values { reading, prim: &settings, path: &path };
     let products = products(&values, |path| {
         values.warn(format!("product {path} is no RenderProduct: it is left out"));
     });
-    let Products { passes, framing, name, place, pictures } = products::of(values, &products);
+    let Products { passes, framing, name, place, pictures, shown } = products::of(values, &products);
     if let Some(purposes) = tokens(&values, "includedPurposes") {
         if !purposes.iter().any(|purpose| purpose == "default") && reading.options.purposes.is_none() {
             values.warn("includedPurposes leaves out default: what has no other purpose is shown all the same");
         }
-        for other in purposes.iter().filter(|purpose| *purpose != "default" && shown(purpose).is_none()) {
+        for other in purposes.iter().filter(|purpose| *purpose != "default" && purpose_named(purpose).is_none()) {
             values.warn(format!("includedPurposes names \"{other}\", which is no purpose: it is ignored"));
         }
     }
-    RenderDesc {
+    let (aovs, places) = shown.into_iter().unzip();
+    let desc = RenderDesc {
         framing,
         passes,
+        aovs,
         product: name,
         product_place: place,
         products: pictures,
         ..RenderDesc::default()
-    }
+    };
+    (desc, places)
 }
 
 /// The products of `settings`; what is named and is none is handed to `lost`.
@@ -79,13 +83,13 @@ impl Purposes {
         let authored = |name: &str| values.as_ref().and_then(|values| tokens(values, name));
         let included = authored("includedPurposes");
         Self {
-            shown: included.map_or_else(|| vec![Purpose::Render], |names| names.iter().filter_map(shown).collect()),
+            shown: included.map_or_else(|| vec![Purpose::Render], |names| names.iter().filter_map(purpose_named).collect()),
             bindings: authored("materialBindingPurposes").unwrap_or_else(|| vec!["full".into(), "".into()]),
         }
     }
 }
 
-fn shown(name: &Token) -> Option<Purpose> {
+fn purpose_named(name: &Token) -> Option<Purpose> {
     match name.as_str() {
         "render" => Some(Purpose::Render),
         "proxy" => Some(Purpose::Proxy),
@@ -148,7 +152,7 @@ pub(super) mod tests {
 
     pub fn render(metadata: &str, prims: &str) -> (RenderDesc, String) {
         let stage = Stage::new(metadata, &format!("def Xform \"Any\" {{}}\n{prims}"));
-        let desc = stage.with("/Any", |reading, _| read(reading));
+        let (desc, _) = stage.with("/Any", |reading, _| read(reading));
         (desc, stage.said())
     }
 
@@ -185,11 +189,10 @@ pub(super) mod tests {
         assert_eq!((desc.framing.resolution, desc.framing.pixel_aspect), (Some([320, 180]), 2.0));
         assert_eq!(desc.product.as_deref(), Some("out/beauty.exr"));
         let passes: Vec<&str> = desc.passes.iter().map(|pass| &**pass).collect();
-        assert_eq!(passes, ["combined", "diffuse_direct", "depth", "shadow_key"]);
+        assert_eq!(passes, ["combined", "diffuse_light_direct", "depth", "shadow_key"]);
         for what in [
             "/Render/Main: product /Any is no RenderProduct",
             "/Render/Data: is not rendered: it names no picture, and its resolution is not that of /Render/Beauty",
-            "/Render/Vars/Diffuse: rendered as diffuse_direct",
             "/Render/Vars/Odd: there is no pass for \"wobble\"",
             "/Render/Vars: no RenderVar",
         ] {

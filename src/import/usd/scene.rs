@@ -13,15 +13,16 @@ use super::light::Profiles;
 use super::material::Materials;
 use super::stage::Reading;
 use super::walk::Placed;
-use super::{camera, crew, instances, light, per_instance, pulse, render, shapes, stamp, units, variants};
+use super::{camera, crew, instances, light, per_instance, pulse, render, shapes, shown, stamp, units, variants};
 use crate::desc::{RenderDesc, SceneDesc};
 use crate::error::Result;
 
 /// The whole stage as a scene.
 pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
+    let (render, places_of_aovs) = render::read(reading);
     let mut scene = SceneDesc {
         place: reading.place.clone(),
-        render: render::read(reading),
+        render,
         variants: offered(reading),
         ..SceneDesc::default()
     };
@@ -29,7 +30,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     pulse::rest();
     let mut images = Images::default();
     let shape_lights = lights_and_cameras(reading, &haul, &mut images, &mut scene);
-    let mut materials = Materials::new(reading, images, per_instance::pairs(&haul.found));
+    let mut materials = Materials::new(reading, images, per_instance::pairs(&haul.found), scene.render.aovs.clone());
     materials.preload(haul.found.iter().flat_map(|found| found.look.materials()).collect::<BTreeSet<_>>());
     let Haul { found, shapes, times } = haul;
     let shapes = shapes::build(reading, &found, shapes, &mut materials);
@@ -39,6 +40,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     if found.iter().any(|found| found.look.linked) {
         light::link(reading, |shape| shape_lights.geometry.get(shape).map(|light| &light.path), &mut scene);
     }
+    shown::tell_of_missing(reading, &scene, &places_of_aovs);
     if scene.instances.is_empty() && scene.lights.is_empty() {
         let what = "shows nothing: it has neither lights nor geometry that is visible";
         reading.warnings.borrow_mut().push(&reading.place, what);

@@ -188,6 +188,7 @@ fn fit([x, y]: [f64; 2], aspect: f64, conform: Conform) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::desc::FramingDesc;
     use crate::error::Place;
     use crate::math::{DAffine3, Vec3};
 

@@ -37,9 +37,10 @@ use openusd_schemas::shade as schema;
 use self::network::{Network, Source, Value};
 use self::surface::{Finished, VertexColors};
 use super::images::{File, Images};
+use super::shown;
 use super::stage::Reading;
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc};
+use crate::desc::{AovDesc, ColorInput, MaterialDesc, ScalarInput, SceneDesc, TextureDesc};
 
 /// Outputs that are read, in this order: MaterialX says more than UsdPreviewSurface.
 const CONTEXTS: [&str; 2] = ["mtlx", ""];
@@ -87,10 +88,17 @@ pub(super) struct Materials<'a> {
     udims: HashMap<(String, bool), Result<Tiled, String>>,
     /// Primvars of two numbers that instances have values of their own of: no UV set can hold them.
     per_instance: BTreeSet<Arc<str>>,
+    /// AOVs that all of them give.
+    aovs: Vec<AovDesc>,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(reading: &'a Reading<'a>, images: Images, per_instance: BTreeSet<Arc<str>>) -> Self {
+    pub fn new(
+        reading: &'a Reading<'a>,
+        images: Images,
+        per_instance: BTreeSet<Arc<str>>,
+        aovs: Vec<AovDesc>,
+    ) -> Self {
         Self {
             reading,
             images,
@@ -102,6 +110,7 @@ impl<'a> Materials<'a> {
             gathered: HashMap::new(),
             udims: HashMap::new(),
             per_instance,
+            aovs,
         }
     }
 
@@ -215,6 +224,7 @@ impl<'a> Materials<'a> {
     }
 
     fn add(&mut self, mut finished: Finished) -> u32 {
+        shown::add(&mut finished.material, &self.aovs);
         finished.material.tinted = finished.colors != VertexColors::default();
         self.finished.push(finished);
         self.finished.len() as u32 - 1

@@ -21,7 +21,7 @@ fn read(file: &str, paths: &[&str]) -> Option<(Vec<Option<MaterialDesc>>, SceneD
     let options = ImportOptions::default();
     let reading = Reading::open(&assets()?.join(file), &options).unwrap();
     let paths: Vec<sdf::Path> = paths.iter().map(|path| sdf::Path::new(path).unwrap()).collect();
-    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new());
+    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new(), Vec::new());
     materials.preload(&paths);
     let found: Vec<Option<u32>> = paths.iter().map(|path| materials.at(path)).collect();
     let found = found.into_iter().map(|index| index.and_then(|index| materials.get(index).cloned())).collect();

@@ -36,7 +36,7 @@ fn read_at(folder: &Path, text: &str, path: &str) -> Read {
     let options = ImportOptions::default();
     let reading = stage(folder, text, &options);
     let path = sdf::Path::new(path).unwrap();
-    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new());
+    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new(), Vec::new());
     materials.preload([&path]);
     let index = materials.at(&path);
     assert_eq!(materials.at(&path), index);

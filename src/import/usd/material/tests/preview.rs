@@ -326,7 +326,7 @@ fn unbound_shapes_show_their_display_color() {
     let folder = tempfile::tempdir().unwrap();
     let options = ImportOptions::default();
     let reading = stage(folder.path(), "", &options);
-    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new());
+    let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new(), Vec::new());
     let index = materials.unbound();
     assert_eq!(materials.unbound(), index);
     let colors = materials.vertex_colors(index);

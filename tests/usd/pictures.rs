@@ -1,0 +1,100 @@
+//! The pictures that a stage asks for, from the command line: each with its camera, its size and its passes.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use penumbra::film::Picture;
+use penumbra::output::exr;
+
+use super::stage;
+
+fn render(folder: &Path, args: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_penumbra"));
+    program.current_dir(folder).arg("render").arg(stage("pictures.usda")).args(args).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn read(folder: &Path, name: &str) -> Picture {
+    exr::read(&folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+fn names(picture: &Picture) -> Vec<&str> {
+    picture.layers.iter().map(|layer| layer.name.trim_start_matches("ViewLayer.")).collect()
+}
+
+/// The first channel of a layer.
+fn first(picture: &Picture, layer: &str) -> Vec<f32> {
+    let layer = picture.layer(layer).unwrap_or_else(|| panic!("{layer}"));
+    layer.data.iter().step_by(layer.channels.len()).copied().collect()
+}
+
+#[test]
+fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let output = render(folder, &["--spp", "4"]);
+    let told = said(&output);
+    assert!(output.status.success(), "{told}");
+    // One render for each view, and none is told as left out.
+    for line in ["front.exr, data.exr: 8x4, camera Front", "away.exr: 6x5, camera Away", "part.exr: 8x2, camera Front"] {
+        assert!(told.contains(line), "{line} is not in\n{told}");
+    }
+    assert!(!told.contains("is not rendered"), "{told}");
+    let front = read(folder, "front.exr");
+    assert_eq!((front.width, front.height, names(&front)), (8, 4, vec!["Combined"]));
+    // The wall is two of eight units wide, the ball is in the seventh.
+    let row: Vec<bool> = first(&front, "Combined")[8..16].iter().map(|red| *red > 0.1).collect();
+    assert_eq!(row[1..7], [false, false, true, true, false, false]);
+    let away = read(folder, "away.exr");
+    assert_eq!((away.width, away.height, names(&away)), (6, 5, vec!["Combined", "Depth"]));
+    assert!(first(&away, "Combined").iter().all(|red| *red == 0.0));
+    let part = read(folder, "part.exr");
+    assert_eq!((part.width, part.height, names(&part)), (8, 2, vec!["Depth"]));
+    // A picture of 16 by 4: the frame of eight by four units, and four more on each side.
+    let row: Vec<bool> = first(&part, "Depth")[..8].iter().map(|depth| *depth < 100.0).collect();
+    assert_eq!(row[..6], [false, false, false, true, true, false], "{row:?}");
+}
+
+#[test]
+fn what_is_typed_counts_for_every_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let output = render(folder, &["--spp", "1", "--camera", "Front", "--size", "4x2"]);
+    let told = said(&output);
+    assert!(output.status.success(), "{told}");
+    // What is left of the differences is the part that one shows.
+    assert!(told.contains("front.exr, away.exr, data.exr: 4x2") && told.contains("part.exr: 4x1"), "{told}");
+    let output = render(folder, &["--spp", "1", "-o", "one.exr"]);
+    let told = said(&output);
+    assert!(output.status.success() && told.contains("asks for 4 pictures; one is written"), "{told}");
+    let one = read(folder, "one.exr");
+    // The passes of the pictures that show the same.
+    let expected = ["Combined", "primvars:wet", "primvars:wind", "primvars:part_id"];
+    assert_eq!((one.width, one.height, names(&one)), (8, 4, expected.to_vec()));
+}
+
+#[test]
+fn primvars_are_shown_where_shapes_have_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let output = render(folder, &["--spp", "64", "--filter", "box:1"]);
+    let told = said(&output);
+    assert!(output.status.success(), "{told}");
+    for what in ["/Render/Wet: 1 of 2 shapes have no primvar wet", "/Render/Id: 1 of 2 shapes have no primvar part_id"] {
+        assert!(told.contains(what), "{what} is not in\n{told}");
+    }
+    let data = read(folder, "data.exr");
+    // Columns 3 and 4 are the wall, 6 and 7 the ball.
+    let row = |layer: &str| first(&data, layer)[8..16].to_vec();
+    assert_eq!(row("primvars:wet"), [0.0, 0.0, 0.0, 0.25, 0.25, 0.0, 0.0, 0.0]);
+    assert!(row("primvars:part_id")[6] > 1.0 && row("primvars:part_id")[3] == 0.0);
+    // From −3 to 1 over two units: means of −2 and 0, as far as 64 samples know.
+    let wind = row("primvars:wind");
+    assert!((wind[3] + 2.0).abs() < 0.1 && wind[4].abs() < 0.1 && wind[6] == 0.0, "{wind:?}");
+    let layer = data.layer("primvars:wind").unwrap();
+    assert_eq!(layer.channels.concat(), "RGBA");
+    assert_eq!(layer.pixel(8, 3, 1)[1..], [0.0, 5.0, 1.0]);
+}
