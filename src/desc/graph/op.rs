@@ -42,6 +42,21 @@ pub enum Op {
     },
     /// A normal bent by a height; world space.
     Bump(Bump),
+    /// The slope of a height over texture coordinates, as a normal map has it.
+    Relief(Relief),
+}
+
+/// The slope of a height over texture coordinates: the unit normal of the relief in tangent space, 0 to 1 as a normal
+/// map stores it. Level where coordinates stand still. It is MaterialX's `heighttonormal`, with its factor of a
+/// sixteenth, by differences over a footprint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relief {
+    /// The height, a number. It is evaluated at the hit and at two points beside it, as the coordinates are.
+    pub height: ValueId,
+    /// Factor of the height, a number.
+    pub scale: ValueId,
+    /// Coordinates in the first two places, in the directions of tangent and bitangent.
+    pub uv: ValueId,
 }
 
 /// A normal bent by the slope of a height, after Morten Mikkelsen: *Bump Mapping Unparametrized Surfaces on
@@ -116,6 +131,20 @@ pub enum Procedural {
     Cell {
         /// How many coordinates count: x y or x y z.
         dimensions: u8,
+    },
+    /// vector, detail, roughness, lacunarity: three sums of octaves of noise, as Open Shading Language and MaterialX have
+    /// it of vectors. The first of them is the number, and what [`Noise`] makes of the same octaves.
+    VectorNoise {
+        /// How many coordinates count: x y or x y z.
+        dimensions: u8,
+    },
+    /// vector, jitter: distances to the nearest, second and third point, one in each cell of whole coordinates, as in
+    /// MaterialX; the first of them is the number.
+    Worley {
+        /// How many coordinates count: x y or x y z.
+        dimensions: u8,
+        /// Three numbers of 0 to 1 for the cell of the nearest point instead, and a fourth that is the number.
+        solid: bool,
     },
     /// vector, scale, frequency, anisotropy, orientation (radians in the plane, a vector in space). Value,
     /// phase and intensity stand in the first three places, the value in the fourth, too.
@@ -295,6 +324,7 @@ impl Op {
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None; 4]),
             Self::Transform { value, .. } => (&[], [Some(*value), None, None, None]),
             Self::Bump(b) => (&[], [b.height, b.strength, b.distance, b.normal].map(Some)),
+            Self::Relief(r) => (&[], [Some(r.height), Some(r.scale), Some(r.uv), None]),
         };
         list.iter().copied().chain(few.into_iter().flatten())
     }
@@ -308,6 +338,7 @@ impl Op {
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None, None, None, None]),
             Self::Transform { value, .. } => (&mut [], [Some(value), None, None, None]),
             Self::Bump(b) => (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some)),
+            Self::Relief(r) => (&mut [], [Some(&mut r.height), Some(&mut r.scale), Some(&mut r.uv), None]),
         };
         list.iter_mut().chain(few.into_iter().flatten())
     }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::allocate;
 use super::hit::{Beside, HERE, varies};
-use super::program::{Action, MOST_ARGS, NEAR, Program};
+use super::program::{Action, LEVEL, MOST_ARGS, NEAR, Program};
 use super::sky::Sky;
 use super::steps::{Arg, Steps};
-use crate::desc::graph::{Bump, Graph, Leaf, Op, Value, ValueId};
+use crate::desc::graph::{Bump, Graph, Leaf, Op, Relief, Value, ValueId};
 use crate::texture::TextureRef;
 
 /// Images and bumps within the coordinates of images and the heights of bumps are filtered so deep.
@@ -121,6 +121,7 @@ impl<'a, R: Resolve> Compiler<'a, R> {
             }
             Op::Image { texture, uv } => self.image(*texture, *uv, at, depth),
             Op::Bump(bump) => self.bump(bump, depth),
+            Op::Relief(relief) => self.relief(relief, depth),
         }
     }
 
@@ -149,6 +150,17 @@ impl<'a, R: Resolve> Compiler<'a, R> {
         }
         let action = Action::Bump { filter_width: f64::from(width as f32), object_space: bump.object_space };
         self.steps.step(action, vec![here, x, y, strength, distance, normal])
+    }
+
+    /// The slope at the hit, as [`Compiler::bump`] has it.
+    fn relief(&mut self, relief: &Relief, depth: u32) -> Arg {
+        let scale = self.lower(relief.scale, HERE, depth + 1);
+        let heights = self.around(relief.height, 1.0, depth);
+        if heights[0] == heights[1] && heights[0] == heights[2] {
+            return self.steps.constant(LEVEL);
+        }
+        let uvs = self.around(relief.uv, 1.0, depth);
+        self.steps.step(Action::Relief, heights.into_iter().chain(uvs).chain([scale]).collect())
     }
 
     /// A value at the hit and at two points beside it.

@@ -84,6 +84,21 @@ pub(super) fn eval(texture: &desc::Procedural, args: &[Value]) -> Value {
             rgb(color, color[0])
         }
         desc::Procedural::Cell { dimensions } => splat(made::cell(p, *dimensions)),
+        desc::Procedural::VectorNoise { dimensions } => {
+            let [detail, roughness, lacunarity] = [1, 2, 3].map(|i| args.number(i));
+            let noise = match dimensions {
+                0..=2 => made::vector_noise([p.x, p.y], detail, roughness, lacunarity),
+                _ => made::vector_noise(p.to_array(), detail, roughness, lacunarity),
+            };
+            rgb(noise, noise[0])
+        }
+        desc::Procedural::Worley { dimensions, solid } => {
+            let found = match dimensions {
+                0..=2 => made::worley([p.x, p.y], args.number(1)),
+                _ => made::worley(p.to_array(), args.number(1)),
+            };
+            if *solid { rgb(found.cell, found.number) } else { rgb(found.distances, found.distances[0]) }
+        }
         desc::Procedural::Gabor { flat } => {
             let sockets = made::GaborSockets {
                 scale: args.number(1),
@@ -262,6 +277,17 @@ mod tests {
         assert!((saw(0.1) - 20.0 * 0.1 / std::f64::consts::TAU).abs() < 1e-4);
         let magic = eval(&desc::Procedural::Magic { depth: 2 }, &[p, n(5.0), n(1.0)]);
         assert!((magic[3] - (magic[0] + magic[1] + magic[2]) / 3.0).abs() < 1e-6);
+        let number = desc::Noise { dimensions: 3, kind: desc::NoiseKind::Fbm, normalize: false, color: false };
+        let same = [p, n(0.0), n(1.0), n(2.0), n(0.6), n(2.1), n(0.0), n(0.0), n(0.0)];
+        let same = eval(&desc::Procedural::Noise(number), &same);
+        let vector = eval(&desc::Procedural::VectorNoise { dimensions: 3 }, &[p, n(2.0), n(0.6), n(2.1)]);
+        assert!((vector[0] - same[0]).abs() < 1e-6 && vector[3] == vector[0] && vector[1] != vector[0]);
+        let worley = |solid, jitter: f64| {
+            let p = [0.25, 0.5, 9.0, 0.0];
+            eval(&desc::Procedural::Worley { dimensions: 2, solid }, &[p, n(jitter)])
+        };
+        assert_eq!([worley(false, 0.0)[0], worley(false, 0.0)[3]], [0.25; 2]);
+        assert!(worley(false, 1.0)[0] != 0.25 && worley(true, 0.0)[0] != worley(true, 0.0)[3]);
         let white = eval(&desc::Procedural::WhiteNoise { dimensions: 3 }, &[p, n(0.0)]);
         assert!(white[3] == white[0] && white[1] != white[0]);
     }
@@ -304,6 +330,8 @@ mod tests {
             desc::Procedural::WhiteNoise { dimensions: 4 },
             desc::Procedural::Gradient(desc::Gradient::Radial),
             desc::Procedural::Gabor { flat: false },
+            desc::Procedural::VectorNoise { dimensions: 3 },
+            desc::Procedural::Worley { dimensions: 3, solid: false },
         ] {
             let value = eval(&texture, &[huge; 10]);
             assert!(value.iter().all(|x| x.is_finite()), "{texture:?}: {value:?}");

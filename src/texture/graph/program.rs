@@ -50,6 +50,8 @@ pub(super) enum Action {
     Transform(Quantity, Space, Space),
     /// height here and at two points beside, strength, distance, normal.
     Bump { filter_width: f64, object_space: bool },
+    /// height here and at two points beside, coordinates at the three, factor of the height.
+    Relief,
 }
 
 /// A step: its action, and where it leaves the result.
@@ -149,6 +151,10 @@ impl Program {
                     let heights = [arg(0)[0], arg(1)[0], arg(2)[0]];
                     finite(bump(hit, heights, arg(3)[0], arg(4)[0], arg(5), *filter_width, *object_space))
                 }
+                Action::Relief => {
+                    let factor = arg(6)[0] * SOBEL;
+                    finite(relief([0, 1, 2].map(|i| factor * arg(i)[0]), [arg(3), arg(4), arg(5)]))
+                }
             };
             registers[step.out as usize] = value;
         }
@@ -207,6 +213,24 @@ fn bump(
     let strength = strength.max(0.0);
     let mixed = unit(std::array::from_fn(|i| strength * bent[i] + (1.0 - strength) * n[i]));
     if mixed == [0.0; 4] { normal } else { carried(Quantity::Normal, Space::Object, Space::World, mixed) }
+}
+
+/// What a height of 1 is to MaterialX's `heighttonormal`.
+const SOBEL: f64 = 1.0 / 16.0;
+
+/// The normal of a level surface as a normal map stores it.
+pub(super) const LEVEL: Value = [0.5, 0.5, 1.0, 1.0];
+
+/// See [`crate::desc::graph::Relief`].
+fn relief([here, x, y]: [f64; 3], [uv, uv_x, uv_y]: [Value; 3]) -> Value {
+    let along = |to: Value, height: f64| [to[0] - uv[0], to[1] - uv[1], height - here, 0.0];
+    let n = unit(cross(along(uv_x, x), along(uv_y, y)));
+    if n[2] == 0.0 {
+        return LEVEL;
+    }
+    // Coordinates may run the other way round.
+    let side = n[2].signum();
+    std::array::from_fn(|i| if i == 3 { 1.0 } else { 0.5 + 0.5 * side * n[i] })
 }
 
 fn cross(a: Value, b: Value) -> Value {

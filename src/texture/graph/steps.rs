@@ -159,7 +159,7 @@ impl Steps {
                     asks.view |= sees(leaf);
                     asks.path |= matches!(leaf, Leaf::Path(_));
                 }
-                Action::Bump { .. } => asks.view = true,
+                Action::Bump { .. } | Action::Relief => asks.view = true,
                 _ => {}
             }
         }

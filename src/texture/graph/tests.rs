@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::desc::graph::{
-    Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Space, Value, ValueId, finite,
+    Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value, ValueId, finite,
 };
 use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, TextureTransform, Wrap};
 use crate::error::{Place, Warnings};
@@ -130,7 +130,7 @@ fn naive(graph: &Graph, id: ValueId, hit: &Plain, at: Beside) -> Value {
         Op::Procedural(texture, args) => {
             procedural::eval(texture, &args.iter().map(|id| value(*id)).collect::<Vec<_>>())
         }
-        Op::Sky { .. } => panic!("random graphs have no sky"),
+        Op::Sky { .. } | Op::Relief(_) => panic!("random graphs have none"),
         Op::Transform { quantity, from, to, value: id } => finite(hit.transform(*quantity, *from, *to, value(*id))),
         Op::Image { texture: 2, .. } => [0.5, 0.5, 0.5, 1.0],
         Op::Image { texture, uv } => {
@@ -308,6 +308,34 @@ fn bumps_bend_normals_by_the_slope() {
     let bump = Bump { height, strength: one, distance: one, normal, filter_width: 1.0, object_space: false };
     let bump = graph.push(Op::Bump(bump));
     assert_eq!(run(&graph, &[bump], &plain(0.0))[0], plain(0.0).leaf(&Leaf::Normal, HERE));
+}
+
+/// u² + 3 v rises by 2 u along u and by 3 along v; a sixteenth of that counts.
+#[test]
+fn reliefs_are_the_slope_over_the_coordinates() {
+    let mut graph = Graph::default();
+    let uv = graph.leaf(Leaf::Uv(0));
+    let [u, v] = [0, 1].map(|place| graph.place(uv, place));
+    let (two, three) = (graph.number(2.0), graph.number(3.0));
+    let (square, triple) = (graph.math(Math::Power, &[u, two]), graph.math(Math::Multiply, &[v, three]));
+    let height = graph.math(Math::Add, &[square, triple]);
+    let minus = graph.constant([-1.0, 1.0, 1.0, 1.0]);
+    let mirrored = graph.math(Math::Multiply, &[uv, minus]);
+    let (eight, half) = (graph.number(8.0), graph.number(0.5));
+    let of = |graph: &mut Graph, height, uv| graph.push(Op::Relief(Relief { height, scale: eight, uv }));
+    for (uv, along) in [(uv, 0.25), (mirrored, -0.25)] {
+        let relief = of(&mut graph, height, uv);
+        let [x, y, z, _] = run(&graph, &[relief], &plain(1e-5))[0];
+        let length = (along * along + 1.5_f64 * 1.5 + 1.0).sqrt();
+        for (found, expected) in [(x, -along), (y, -1.5), (z, 1.0)] {
+            assert!((2.0 * found - 1.0 - expected / length).abs() < 1e-4, "{x} {y} {z}");
+        }
+    }
+    // Level heights, coordinates that stand still and footprints without width are level.
+    let level = [of(&mut graph, half, uv), of(&mut graph, height, half)];
+    assert_eq!(run(&graph, &level, &plain(0.1)), [[0.5, 0.5, 1.0, 1.0]; 2]);
+    let relief = of(&mut graph, height, uv);
+    assert_eq!(run(&graph, &[relief], &plain(0.0))[0], [0.5, 0.5, 1.0, 1.0]);
 }
 
 /// A UV set, scaled, turned and moved by all the operations that doors use for it, is the plain texture.

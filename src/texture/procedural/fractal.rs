@@ -4,7 +4,7 @@
 //! multifractal, heterogeneous terrain, hybrid and ridged multifractal. A fraction of an octave is
 //! blended in, so that `detail` has no steps; the ridged one has steps, as in Cycles.
 
-use super::perlin::signed;
+use super::perlin::{signed, signed_vector};
 use super::round::{mix, saturate, within};
 
 /// Octaves beyond this have frequencies beyond what a float holds.
@@ -26,6 +26,18 @@ impl Octaves {
         let detail = within(detail, 0.0, MOST_DETAIL);
         let whole = detail as u32;
         Self { whole, fraction: detail - whole as f32, roughness, lacunarity }
+    }
+
+    /// Fractional Brownian motion of three noises at once, by whole octaves.
+    pub fn fbm_vector<const N: usize>(&self, p: [f32; N]) -> [f32; 3] {
+        let (mut frequency, mut amplitude, mut sum) = (1.0, 1.0, [0.0; 3]);
+        for _ in 0..=self.whole {
+            let noise = signed_vector(p.map(|x| frequency * x));
+            sum = std::array::from_fn(|i| sum[i] + amplitude * noise[i]);
+            amplitude *= self.roughness;
+            frequency *= self.lacunarity;
+        }
+        sum
     }
 
     /// Fractional Brownian motion; `normalize` maps it to about 0 to 1.

@@ -15,9 +15,11 @@ mod magic;
 mod noise;
 mod perlin;
 mod round;
+mod vector_noise;
 mod voronoi;
 mod wave;
 mod white_noise;
+mod worley;
 
 pub use brick::{Brick, BrickSockets, BrickValue};
 pub use checker::checker;
@@ -27,7 +29,9 @@ pub use magic::Magic;
 pub use noise::{Noise, NoiseKind, NoiseSockets};
 pub use voronoi::{Scatter, Voronoi, VoronoiFeature, VoronoiMetric, VoronoiSockets, VoronoiValue};
 pub use wave::{Wave, WaveDirection, WaveProfile, WaveSockets};
+pub use vector_noise::vector_noise;
 pub use white_noise::{WhiteNoise, cell};
+pub use worley::{Worley, worley};
 
 /// How many coordinates a texture reads: `w`; `x, y`; `x, y, z`; or `x, y, z, w`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

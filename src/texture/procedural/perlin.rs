@@ -20,7 +20,14 @@ const COARSE: f32 = 1_000_000.0;
 
 /// Noise from about -1 to 1.
 pub fn signed<const N: usize>(p: [f32; N]) -> f32 {
-    SCALE[N - 1] * perlin(p.map(repeat::<N>))
+    let [noise] = perlin(p.map(repeat::<N>));
+    SCALE[N - 1] * noise
+}
+
+/// Three of them, of which the first is that of [`signed`] in two and three dimensions: Open Shading Language's noise of
+/// vectors, whose gradients go by a byte each of the hash.
+pub fn signed_vector<const N: usize>(p: [f32; N]) -> [f32; 3] {
+    perlin::<N, 3>(p.map(repeat::<N>)).map(|noise| SCALE[N - 1] * noise)
 }
 
 /// `x` brought into the period.
@@ -33,7 +40,7 @@ fn repeat<const N: usize>(x: f32) -> f32 {
     wrapped + if x.abs() >= COARSE { 0.5 } else { 0.0 }
 }
 
-fn perlin<const N: usize>(p: [f32; N]) -> f32 {
+fn perlin<const N: usize, const C: usize>(p: [f32; N]) -> [f32; C] {
     let low = p.map(floor);
     let cell = low.map(to_int);
     let mut inside = p;
@@ -41,7 +48,7 @@ fn perlin<const N: usize>(p: [f32; N]) -> f32 {
         *inside -= low;
     }
     // Bit d of a corner's number is its step along axis d.
-    let mut values = [0.0; 16];
+    let mut values = [[0.0; C]; 16];
     for (corner, value) in values.iter_mut().enumerate().take(1 << N) {
         let (mut key, mut from_corner) = ([0; N], inside);
         for d in 0..N {
@@ -49,12 +56,13 @@ fn perlin<const N: usize>(p: [f32; N]) -> f32 {
             key[d] = (cell[d] as u32).wrapping_add(step);
             from_corner[d] -= step as f32;
         }
-        *value = gradient(lookup3(key), from_corner);
+        let hash = lookup3(key);
+        *value = std::array::from_fn(|channel| gradient(hash >> (8 * channel), from_corner));
     }
     for (d, inside) in inside.iter().enumerate() {
         let t = fade(*inside);
         for i in 0..1 << (N - 1 - d) {
-            values[i] = mix(values[2 * i], values[2 * i + 1], t);
+            values[i] = std::array::from_fn(|channel| mix(values[2 * i][channel], values[2 * i + 1][channel], t));
         }
     }
     values[0]

@@ -55,6 +55,12 @@ pub(super) enum Op {
         to: Space,
         value: Id,
     },
+    /// The slope of a height, as graphs have it.
+    Relief {
+        height: Id,
+        scale: Id,
+        uv: Id,
+    },
     Apply(Function, Vec<Id>),
 }
 
@@ -104,25 +110,34 @@ impl Exprs {
 
     /// What `root` depends on, itself included, arguments first.
     pub fn needed(&self, root: Id) -> Vec<Id> {
+        self.reached(root, |_| true)
+    }
+
+    /// True where `root` goes by vectors that are known of the hit; slopes of heights are in tangent space whatever
+    /// those go by.
+    pub fn has_leaf(&self, root: Id) -> bool {
+        let reached = self.reached(root, |op| !matches!(op, Op::Relief { .. }));
+        reached.into_iter().any(|id| matches!(self.op(id), Op::Leaf(_) | Op::Transform { .. }))
+    }
+
+    /// `root` and what it is made of, and what that is made of where `goes_on` says so; arguments first.
+    fn reached(&self, root: Id, goes_on: impl Fn(&Op) -> bool) -> Vec<Id> {
         let mut needed = vec![false; root.0 as usize + 1];
         needed[root.0 as usize] = true;
         for i in (0..needed.len()).rev() {
-            match (needed[i], &self.ops[i]) {
-                (true, Op::Apply(_, args) | Op::Procedural(_, args)) => {
-                    args.iter().for_each(|arg| needed[arg.0 as usize] = true)
-                }
-                (true, Op::Image { uv: from, .. } | Op::Transform { value: from, .. }) => {
-                    needed[from.0 as usize] = true
-                }
-                _ => {}
+            let op = &self.ops[i];
+            if !needed[i] || !goes_on(op) {
+                continue;
+            }
+            let mut need = |id: &Id| needed[id.0 as usize] = true;
+            match op {
+                Op::Apply(_, args) | Op::Procedural(_, args) => args.iter().for_each(need),
+                Op::Image { uv: from, .. } | Op::Transform { value: from, .. } => need(from),
+                Op::Relief { height, scale, uv } => [height, scale, uv].into_iter().for_each(need),
+                Op::Constant(_) | Op::Lookup(_) | Op::Uv { .. } | Op::Primvar { .. } | Op::Leaf(_) => {}
             }
         }
         (0..needed.len() as u32).filter(|i| needed[*i as usize]).map(Id).collect()
-    }
-
-    /// True where `root` goes by what is known of the hit.
-    pub fn has_leaf(&self, root: Id) -> bool {
-        self.needed(root).into_iter().any(|id| matches!(self.op(id), Op::Leaf(_) | Op::Transform { .. }))
     }
 
     pub fn math(&mut self, math: Math, args: &[Id]) -> Id {

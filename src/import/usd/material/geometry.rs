@@ -1,8 +1,8 @@
-//! MaterialX's nodes that go by where a surface is hit, and its noise.
+//! MaterialX's nodes that go by where a surface is hit.
 
 use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
-use crate::desc::graph::{Function, Leaf, Math, Noise, NoiseKind, Procedural};
+use crate::desc::graph::{Function, Leaf, Math};
 use crate::math::DMat3;
 
 /// position, normal and viewdirection, in the space that the node names, in the stage's axes and units.
@@ -65,34 +65,6 @@ fn turned(e: &mut Evaluator<'_, '_>, value: Id, by: DMat3) -> Id {
     }
     let rows = [m.x_axis, m.y_axis, m.z_axis].map(|row| [row.x, row.y, row.z, 0.0]);
     e.exprs.apply(Function::Affine(Box::new(rows)), &[value])
-}
-
-/// Perlin noise of one number, `amplitude × noise + pivot`, and sums of its octaves. MaterialX and Cycles both
-/// have that of Open Shading Language, with its hash and scale.
-pub(super) fn noise(e: &mut Evaluator<'_, '_>, node: usize, category: &str) -> Id {
-    let flat = category.ends_with("2d");
-    let at = if flat { e.optional(node, "texcoord") } else { e.optional(node, "position") };
-    let at = at.unwrap_or_else(|| match flat {
-        true => e.texcoord("st".into()),
-        false => e.exprs.push(Op::Leaf(Leaf::ObjectPosition)),
-    });
-    let is_fractal = category.starts_with("fractal");
-    let octaves = if is_fractal { e.uniform(node, "octaves", 3.0).clamp(1.0, 16.0) } else { 1.0 };
-    let (lacunarity, diminish) = match is_fractal {
-        true => (e.scalar(node, "lacunarity", 2.0), e.scalar(node, "diminish", 0.5)),
-        false => (e.exprs.number(2.0), e.exprs.number(0.5)),
-    };
-    let amplitude = e.scalar(node, "amplitude", 1.0);
-    let pivot = if is_fractal { e.exprs.number(0.0) } else { e.scalar(node, "pivot", 0.0) };
-    let (zero, one, detail) = (e.exprs.number(0.0), e.exprs.number(1.0), e.exprs.number(octaves - 1.0));
-    let dimensions = if flat { 2 } else { 3 };
-    let kind = Procedural::Noise(Noise { dimensions, kind: NoiseKind::Fbm, normalize: false, color: false });
-    // vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion.
-    let args = vec![at, zero, one, detail, diminish, lacunarity, zero, zero, zero];
-    let noise = e.exprs.push(Op::Procedural(kind, args));
-    let number = e.exprs.extract(noise, 3);
-    let scaled = e.exprs.multiply(number, amplitude);
-    e.exprs.add(scaled, pivot)
 }
 
 /// checkerboard, as its node graph in `stdlib_ng.mtlx` has it.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::Materials;
 use super::expr::{Exprs, Id, Lookup, Op};
 use crate::desc::TextureTransform;
-use crate::desc::graph::{self, Function, Graph, Leaf, Math, Value, ValueId};
+use crate::desc::graph::{self, Function, Graph, Leaf, Math, Relief, Value, ValueId};
 use crate::desc::{ColorSpace, ImageDesc};
 
 /// The graph of a material in the making.
@@ -58,6 +58,10 @@ impl Lowering {
                 let value = self.at(*value);
                 self.graph.transform(*quantity, *from, *to, value)
             }
+            Op::Relief { height, scale, uv } => {
+                let [height, scale, uv] = [height, scale, uv].map(|id| self.at(*id));
+                self.graph.push(graph::Op::Relief(Relief { height, scale, uv }))
+            }
             Op::Apply(function, args) => {
                 let args: Vec<ValueId> = args.iter().map(|arg| self.at(*arg)).collect();
                 self.graph.apply(function.clone(), &args)
@@ -99,6 +103,7 @@ impl Lowering {
                     [u, v, 0.0, 1.0]
                 }
                 Op::Primvar { fallback, .. } => *fallback,
+                Op::Relief { .. } => [0.5, 0.5, 1.0, 1.0],
                 // Anywhere, seen from ahead; signed noise is 0 in the mean.
                 Op::Leaf(_) | Op::Procedural(..) => [0.0, 0.0, 0.0, 1.0],
                 Op::Transform { value, .. } => known[value],

@@ -190,8 +190,8 @@ fn kind(element: Xml<'_, '_>) -> String {
     let incoming = |name: &str| child(element, "input", name).and_then(|input| input.attribute("type"));
     match element.tag_name().name() {
         "convert" => format!("{}_{own}", incoming("in").unwrap_or(own)),
-        "dotproduct" => incoming("in1").unwrap_or(own).to_string(),
-        "magnitude" => incoming("in").unwrap_or(own).to_string(),
+        "dotproduct" | "distance" => incoming("in1").unwrap_or(own).to_string(),
+        "magnitude" | "maxcomponent" | "mincomponent" => incoming("in").unwrap_or(own).to_string(),
         _ => own.to_string(),
     }
 }

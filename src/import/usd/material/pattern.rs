@@ -2,7 +2,7 @@
 
 use super::evaluate::Evaluator;
 use super::expr::{Id, Op};
-use super::{geometry, ramps, random, spaces};
+use super::{compositing, geometry, noise, ramps, random, relief, spaces};
 use crate::desc::graph::{Function as F, Math};
 
 /// Names of the inputs of a function, with their defaults.
@@ -143,29 +143,30 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize) -> Option<Id> {
         }
         "premult" | "unpremult" => with_alpha(e, node, category == "premult"),
         "position" | "normal" | "viewdirection" => geometry::vector(e, node, category),
-        "noise2d" | "noise3d" | "fractal2d" | "fractal3d" if count == 1 => geometry::noise(e, node, category),
+        "noise2d" | "noise3d" | "fractal2d" | "fractal3d" => noise::perlin(e, node, category, count),
+        "worleynoise2d" | "worleynoise3d" => noise::worley(e, node, category, count),
+        "unifiednoise2d" | "unifiednoise3d" => noise::unified(e, node, category),
         "checkerboard" => geometry::checkerboard(e, node),
-        "normalmap" => {
-            let map = e.input(node, "in", [0.5, 0.5, 1.0, 1.0]);
-            let double = e.exprs.scale(map, 2.0);
-            let one = e.exprs.number(1.0);
-            let (normal, scale) = (e.exprs.subtract(double, one), e.uniform(node, "scale", 1.0));
-            let scale = e.exprs.constant([scale, scale, 1.0, 1.0]);
-            e.exprs.multiply(normal, scale)
-        }
+        "normalmap" => relief::normal_map(e, node),
+        "heighttonormal" => relief::height_to_normal(e, node),
+        "bump" => relief::bump(e, node),
         "" => {
             e.warn(node, "is a shader without identifier; the input that it drives keeps its default");
             return None;
         }
         _ => {
-            e.warn(node, format!("node \"{category}\" isn't computed; the input that it drives keeps its default"));
-            return None;
+            let found = compositing::compute(e, node, category);
+            if found.is_none() {
+                let what = format!("node \"{category}\" isn't computed; the input that it drives keeps its default");
+                e.warn(node, what);
+            }
+            found?
         }
     })
 }
 
 /// How many numbers a type has.
-fn count(kind: &str) -> u8 {
+pub(super) fn count(kind: &str) -> u8 {
     match kind.split('_').next().unwrap_or_default() {
         kind if kind.ends_with('2') || kind.ends_with("2FA") => 2,
         kind if kind.ends_with('4') || kind.ends_with("4FA") => 4,

@@ -14,7 +14,8 @@ pub(super) fn cell_noise(e: &mut Evaluator<'_, '_>, node: usize, category: &str)
     cell(e, at, 3)
 }
 
-fn cell(e: &mut Evaluator<'_, '_>, at: Id, dimensions: u8) -> Id {
+/// The number of 0 to 1 of the cell at `at`.
+pub(super) fn cell(e: &mut Evaluator<'_, '_>, at: Id, dimensions: u8) -> Id {
     e.exprs.push(Op::Procedural(Procedural::Cell { dimensions }, vec![at]))
 }
 

@@ -3,6 +3,7 @@
 mod assets;
 mod materialx;
 mod nodes;
+mod noise;
 mod preview;
 
 use std::path::Path;
