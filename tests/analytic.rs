@@ -390,9 +390,8 @@ fn passes_recombine_to_the_picture() {
     let lobes = ["Diffuse", "Glossy", "Transmission"].map(|lobe| {
         [layer(&format!("{lobe} Color")), layer(&format!("{lobe} Direct")), layer(&format!("{lobe} Indirect"))]
     });
-    let lights = ["Diffuse", "Glossy", "Transmission"].map(|lobe| {
-        ["Light", "Light Direct", "Light Indirect"].map(|part| layer(&format!("{lobe} {part}")))
-    });
+    let lights = ["Diffuse", "Glossy", "Transmission"]
+        .map(|lobe| ["Light", "Light Direct", "Light Indirect"].map(|part| layer(&format!("{lobe} {part}"))));
     for pixel in 0..24 * 24 {
         for c in 0..3 {
             let i = 3 * pixel + c;

@@ -295,6 +295,39 @@ fn rounds(material: u32, strands: bool, builder: &mut Builder) {
     builder.rounds(RoundsDesc { points, radii: vec![0.15, 0.2], strands, ..RoundsDesc::default() }, material);
 }
 
+/// A ball that grows evenly covers a place for the share of the time in which it is large enough; so does the end of a
+/// strand.
+#[test]
+fn rounds_grow_while_the_shutter_is_open() {
+    let (small, large) = (0.1, 0.6);
+    for strands in [false, true] {
+        let mut builder = Builder::default();
+        let material = builder.material(glow(1.0));
+        let radius = |share: f64| (small + (large - small) * share) as f32;
+        // The strand leads away from the camera, behind its first ball.
+        let points = if strands { vec![[0.0; 3], [0.0, 0.0, -0.01]] } else { vec![[0.0; 3]] };
+        let strands = if strands { vec![Strand { end: 2, closed: false }] } else { Vec::new() };
+        let (motion, count) = (keys(2, |_| points.clone()), points.len());
+        let radii_motion = [0.0, 1.0].map(|share| vec![radius(share); count]).to_vec();
+        let radii = vec![radius(FRAME); count];
+        let rounds = RoundsDesc { points, radii, strands, motion, radii_motion, ..RoundsDesc::default() };
+        builder.rounds(rounds, material);
+        look(&mut builder, DAffine3::IDENTITY);
+        let found = picture(&builder.desc, SIZE, &boxed("combined", 2048));
+        // Seen from a metre away, a ball of radius r reaches as far as r / √(1 − r²).
+        let covered = |x: f64, y: f64| {
+            let d = x.hypot(y);
+            ((large - d / (1.0 + d * d).sqrt()) / (large - small)).clamp(0.0, 1.0)
+        };
+        let place = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(SIZE) - 1.0;
+        let middle = SIZE / 2;
+        let expected: Vec<f64> = (0..SIZE).map(|x| covered(place(x), place(middle))).collect();
+        // But for the pixels in which the smallest ball ends.
+        let of = |row: Vec<f64>| -> Vec<f64> { row[middle as usize + 3..].to_vec() };
+        assert_near("grown", &of(row(&found, "Combined", 0, middle)), &of(expected), 2048.0);
+    }
+}
+
 /// Scenes with the one thing that moves last, in every kind of shape, and its movement.
 fn moving_things(base: &Builder, material: &MaterialDesc) -> Vec<(String, Builder)> {
     let mut list = Vec::new();

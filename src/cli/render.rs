@@ -233,7 +233,9 @@ impl Job<'_> {
         let mut late = Vec::new();
         if let Some(SampleId { x, y, index }) = bad.first {
             let count = bad.count;
-            late.push(format!("{count} samples were not finite and left out; the first: --debug-sample {x},{y},{index}"));
+            late.push(format!(
+                "{count} samples were not finite and left out; the first: --debug-sample {x},{y},{index}"
+            ));
         }
         let short = job::shortfalls(rendered, settings);
         late.extend(short.iter().cloned());

@@ -105,6 +105,9 @@ fn check_rounds(rounds: &RoundsDesc) -> Result<()> {
     rule(rounds.colors.as_ref().is_none_or(|values| values.len() == points), "wrong count of colors")?;
     rule(rounds.attributes.iter().all(|(_, values)| values.len() == points), "wrong count of attributes")?;
     rule(rounds.motion.iter().all(|m| m.value.len() == points), "wrong count of points that move")?;
+    let radii = &rounds.radii_motion;
+    let of_times = radii.is_empty() || radii.len() == rounds.motion.len();
+    rule(of_times && radii.iter().all(|radii| radii.len() == points), "wrong count of radii that change")?;
     let ends = || rounds.strands.iter().map(|strand| strand.end);
     let grow = std::iter::once(0).chain(ends()).zip(ends()).all(|(before, end)| before < end);
     let fit = ends().next_back().is_none_or(|end| end as usize == points);

@@ -40,7 +40,7 @@ pub use light::{
 pub use material::{AlphaMode, MaterialDesc};
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
 pub use render::{ProductDesc, RenderDesc};
-pub use rounds::{RoundsDesc, Strand};
+pub use rounds::{RoundsDesc, RoundsKey, Strand};
 pub use shadow::ShadowDesc;
 pub use subsurface::{SubsurfaceDesc, SubsurfaceMethod};
 pub use terminator::TerminatorDesc;

@@ -29,7 +29,12 @@ pub struct RoundsDesc {
     pub material_slots: Option<Vec<u16>>,
     /// Points at other times of the shutter, in the order of time; empty for what keeps its shape.
     pub motion: Vec<Motion<Vec<[f32; 3]>>>,
+    /// Radii at each of the times of `motion`; empty for those that stay as they are.
+    pub radii_motion: Vec<Vec<f32>>,
 }
+
+/// Points and radii at one time.
+pub type RoundsKey<'a> = (&'a [[f32; 3]], &'a [f32]);
 
 /// Points that follow each other: those from the end of the strand before to this one's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +46,14 @@ pub struct Strand {
 }
 
 impl RoundsDesc {
+    /// What it is at the frame, and at other times of the shutter.
+    pub fn keys(&self) -> (RoundsKey<'_>, Vec<Motion<RoundsKey<'_>>>) {
+        let radii = |i: usize| self.radii_motion.get(i).unwrap_or(&self.radii).as_slice();
+        let keys = self.motion.iter().enumerate();
+        let motion = keys.map(|(i, m)| Motion { time: m.time, value: (m.value.as_slice(), radii(i)) });
+        ((&self.points, &self.radii), motion.collect())
+    }
+
     /// The points before, at both ends and after each segment of the strands, in their order; the point
     /// before or after an open end is the end itself. A strand of one point is a segment from it to
     /// itself. `None` where all points stand alone.

@@ -63,8 +63,8 @@ impl Shutter {
                 !mesh.triangles.is_empty() && self.keys(&mesh.points, &mesh.motion).is_some()
             }
             ShapeRef::Rounds(i) => {
-                let rounds = &scene.rounds[i as usize];
-                self.keys(&rounds.points, &rounds.motion).is_some()
+                let (now, motion) = scene.rounds[i as usize].keys();
+                self.keys(&now, &motion).is_some()
             }
         };
         let is_met = |instance: &InstanceDesc| {

@@ -121,7 +121,10 @@ fn worlds_and_cameras_are_what_blender_has() {
     let ProjectionDesc::Equirectangular { latitude, .. } = camera.projection else { panic!("{camera:?}") };
     assert_eq!((latitude[0], camera.exposure), (0.0, 2.0));
     assert_eq!(camera.lens.unwrap().focus_distance, 3.0);
-    assert_eq!((scene.render.framing.camera.as_deref(), scene.render.framing.resolution), (Some("Camera"), Some([400, 200])));
+    assert_eq!(
+        (scene.render.framing.camera.as_deref(), scene.render.framing.resolution),
+        (Some("Camera"), Some([400, 200]))
+    );
     assert_eq!((scene.render.film_transparent, scene.render.crop), (Some(true), Some([10, 80, 100, 100])));
 }
 

@@ -35,11 +35,12 @@ fn first(picture: &Picture, layer: &str) -> Vec<f32> {
 fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let output = render(folder, &["--spp", "4"]);
+    let output = render(folder, &["--spp", "4", "--filter", "box:1"]);
     let told = said(&output);
     assert!(output.status.success(), "{told}");
     // One render for each view, and none is told as left out.
-    for line in ["front.exr, data.exr: 8x4, camera Front", "away.exr: 6x5, camera Away", "part.exr: 8x2, camera Front"] {
+    for line in ["front.exr, data.exr: 8x4, camera Front", "away.exr: 6x5, camera Away", "part.exr: 8x2, camera Front"]
+    {
         assert!(told.contains(line), "{line} is not in\n{told}");
     }
     assert!(!told.contains("is not rendered"), "{told}");
@@ -53,7 +54,7 @@ fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
     assert!(first(&away, "Combined").iter().all(|red| *red == 0.0));
     let part = read(folder, "part.exr");
     assert_eq!((part.width, part.height, names(&part)), (8, 2, vec!["Depth"]));
-    // A picture of 16 by 4: the frame of eight by four units, and four more on each side.
+    // Pixels of one and a half units, the first of them six from the middle.
     let row: Vec<bool> = first(&part, "Depth")[..8].iter().map(|depth| *depth < 100.0).collect();
     assert_eq!(row[..6], [false, false, false, true, true, false], "{row:?}");
 }
@@ -83,7 +84,8 @@ fn primvars_are_shown_where_shapes_have_them() {
     let output = render(folder, &["--spp", "64", "--filter", "box:1"]);
     let told = said(&output);
     assert!(output.status.success(), "{told}");
-    for what in ["/Render/Wet: 1 of 2 shapes have no primvar wet", "/Render/Id: 1 of 2 shapes have no primvar part_id"] {
+    for what in ["/Render/Wet: 1 of 2 shapes have no primvar wet", "/Render/Id: 1 of 2 shapes have no primvar part_id"]
+    {
         assert!(told.contains(what), "{what} is not in\n{told}");
     }
     let data = read(folder, "data.exr");

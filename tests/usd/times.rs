@@ -143,6 +143,57 @@ def Cube "T" {
     assert!(motion.len() > 4 && motion.windows(2).all(|pair| pair[0].time < pair[1].time));
 }
 
+/// Widths, of points that stand still and of such that fly, of strands and of ribbons.
+#[test]
+fn widths_change_while_a_shutter_is_open() {
+    let text = r#"
+def Camera "C" { double shutter:open = -1
+ double shutter:close = 1 }
+def Points "Grows" {
+    point3f[] points = [(0, 0, 0), (9, 0, 0)]
+    float[] widths.timeSamples = { 0: [0, 8], 5: [5, 8], 8: [2, 8] }
+}
+def Points "Flies" {
+    point3f[] points.timeSamples = { 4: [(0, 0, 0)] }
+    vector3f[] velocities.timeSamples = { 4: [(24, 0, 0)] }
+    float[] widths.timeSamples = { 0: [1], 8: [9] }
+}
+def BasisCurves "Strand" {
+    uniform token type = "linear"
+    int[] curveVertexCounts = [2]
+    point3f[] points = [(0, 0, 0), (9, 0, 0)]
+    float[] primvars:widths.timeSamples = { 0: [2, 1], 8: [10, 1] } ( interpolation = "vertex" )
+}
+def BasisCurves "Ribbon" {
+    uniform token type = "linear"
+    int[] curveVertexCounts = [2]
+    point3f[] points.timeSamples = { 0: [(0, 0, 0), (9, 0, 0)], 8: [(0, 8, 0), (9, 8, 0)] }
+    normal3f[] normals = [(0, 0, 1), (0, 0, 1)]
+    float[] widths.timeSamples = { 0: [2, 2], 8: [10, 10] }
+}
+def Points "Counts" {
+    point3f[] points = [(0, 0, 0), (9, 0, 0)]
+    float[] widths.timeSamples = { 0: [1, 1], 4: [1, 1], 5: [1, 1, 1] }
+}
+"#;
+    let loaded = read(text, 4.0);
+    let rounds = |path| loaded.scene.rounds(loaded.one(path)).unwrap();
+    let times = |path| rounds(path).motion.iter().map(|m| m.time).collect::<Vec<_>>();
+    // The sample within the shutter is at its end.
+    assert_eq!((rounds("/Grows").radii.clone(), times("/Grows")), (vec![2.0, 4.0], vec![-1.0, 1.0]));
+    assert_eq!(rounds("/Grows").radii_motion, [[1.5, 4.0], [2.5, 4.0]]);
+    assert_eq!(rounds("/Flies").radii_motion, [[2.0], [3.0]]);
+    assert_eq!(rounds("/Flies").motion[1].value, [[24.0, 0.0, 0.0]]);
+    assert_eq!(rounds("/Strand").radii_motion, [[2.5, 0.5], [3.5, 0.5]]);
+    let ribbon = loaded.scene.mesh(loaded.one("/Ribbon")).unwrap();
+    let across = |points: &[[f32; 3]]| [points[0][1], points[1][1]];
+    assert_eq!(across(&ribbon.points), [1.0, 7.0]);
+    let motion: Vec<_> = ribbon.motion.iter().map(|m| (m.time, across(&m.value))).collect();
+    assert_eq!(motion, [(-1.0, [0.5, 5.5]), (1.0, [1.5, 8.5])]);
+    assert!(rounds("/Counts").radii_motion.is_empty());
+    loaded.said_of("/Counts.widths: the number of widths changes within the shutter; those of the frame are used");
+}
+
 /// `--interpolation held`, OpenUSD's `SetInterpolationType(Usd.InterpolationTypeHeld)`.
 #[test]
 fn samples_are_held_where_that_is_asked_for() {

@@ -5,8 +5,9 @@
 //! of glTF alike.
 
 use penumbra::desc::{
-    Attribute, CameraDesc, ConeDesc, DecayLaw, FramingDesc, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet, MeshDesc,
-    Motion, ProductDesc, ProjectionDesc, RenderDesc, RoundsDesc, SceneDesc, ShapeRef, ShapingDesc, Visibility,
+    Attribute, CameraDesc, ConeDesc, DecayLaw, FramingDesc, InstanceDesc, LightDesc, LightKind, LightLinks, LinkSet,
+    MeshDesc, Motion, ProductDesc, ProjectionDesc, RenderDesc, RoundsDesc, SceneDesc, ShapeRef, ShapingDesc,
+    Visibility,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DMat4};
@@ -90,6 +91,7 @@ fn rounds(rounds: &RoundsDesc) -> Value {
             .collect::<Vec<_>>(),
         "material_slots": rounds.material_slots,
         "motion": motion(&rounds.motion),
+        "radii_motion": rounds.radii_motion,
     })
 }
 

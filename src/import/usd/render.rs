@@ -83,7 +83,8 @@ impl Purposes {
         let authored = |name: &str| values.as_ref().and_then(|values| tokens(values, name));
         let included = authored("includedPurposes");
         Self {
-            shown: included.map_or_else(|| vec![Purpose::Render], |names| names.iter().filter_map(purpose_named).collect()),
+            shown: included
+                .map_or_else(|| vec![Purpose::Render], |names| names.iter().filter_map(purpose_named).collect()),
             bindings: authored("materialBindingPurposes").unwrap_or_else(|| vec!["full".into(), "".into()]),
         }
     }

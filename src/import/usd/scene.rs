@@ -20,12 +20,8 @@ use crate::error::Result;
 /// The whole stage as a scene.
 pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     let (render, places_of_aovs) = render::read(reading);
-    let mut scene = SceneDesc {
-        place: reading.place.clone(),
-        render,
-        variants: offered(reading),
-        ..SceneDesc::default()
-    };
+    let mut scene =
+        SceneDesc { place: reading.place.clone(), render, variants: offered(reading), ..SceneDesc::default() };
     let haul = gather(reading);
     pulse::rest();
     let mut images = Images::default();

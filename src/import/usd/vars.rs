@@ -81,7 +81,13 @@ fn of_var(values: &Values<'_>) -> Option<String> {
     let mut found = match kind.as_str() {
         _ if is_expression => of_expression(&source),
         // Of what shapes carry there is a pass of the first texture coordinates alone; others are AOVs.
-        "primvar" => if source == "st" { Some("uv") } else { None },
+        "primvar" => {
+            if source == "st" {
+                Some("uv")
+            } else {
+                None
+            }
+        }
         _ => of_name(&source),
     };
     if found.is_none() && kind != "primvar" {
@@ -324,7 +330,10 @@ mod tests {
     #[test]
     fn primvars_become_aovs() {
         let var = |kind: &str, data: &str, source: &str| {
-            format!("uniform token sourceType = \"{kind}\"\nuniform token dataType = \"{data}\"\n{}", self::source(source))
+            format!(
+                "uniform token sourceType = \"{kind}\"\nuniform token dataType = \"{data}\"\n{}",
+                self::source(source)
+            )
         };
         let vars = [
             var("primvar", "float", "wet"),
@@ -336,7 +345,10 @@ mod tests {
         assert_eq!(desc.passes.join(" "), "aov:primvars:wet aov:primvars:wind aov:primvars:id uv");
         let kinds: Vec<_> = desc.aovs.iter().map(|aov| (&*aov.name, aov.kind)).collect();
         let (number, color) = (AovKind::Value, AovKind::Color);
-        assert_eq!((kinds, &*said), (vec![("primvars:wet", number), ("primvars:wind", color), ("primvars:id", number)], ""));
+        assert_eq!(
+            (kinds, &*said),
+            (vec![("primvars:wet", number), ("primvars:wind", color), ("primvars:id", number)], "")
+        );
         let (_, said) = stage(&[&var("primvar", "color4f", "tint")]);
         assert!(said.contains("/V0: of primvar tint, which is color4f, three numbers are shown"), "{said}");
     }

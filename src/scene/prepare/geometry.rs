@@ -130,12 +130,12 @@ fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times
 
 fn prepare_rounds(desc: &RoundsDesc, shutter: Option<Shutter>) -> (Rounds, Blas) {
     let (center, points) = centered(&desc.points);
-    let balls = |points: &mut dyn Iterator<Item = Vec3>| {
-        points.zip(&desc.radii).map(|(p, &radius)| [p.x, p.y, p.z, radius]).collect::<Vec<_>>()
+    let balls = |points: &mut dyn Iterator<Item = Vec3>, radii: &[f32]| {
+        points.zip(radii).map(|(p, &radius)| [p.x, p.y, p.z, radius]).collect::<Vec<_>>()
     };
     let mut rounds = Rounds {
         center,
-        balls: balls(&mut points.into_iter()),
+        balls: balls(&mut points.into_iter(), &desc.radii),
         segments: desc.segments(),
         uvs: desc.uvs.iter().map(|set| set.iter().map(|&uv| Vec2::from(uv)).collect()).collect(),
         colors: desc.colors.clone(),
@@ -143,12 +143,14 @@ fn prepare_rounds(desc: &RoundsDesc, shutter: Option<Shutter>) -> (Rounds, Blas)
         motion: None,
     };
     let segments = rounds.segments.as_deref();
-    let keys = shutter.and_then(|shutter| shutter.keys(&desc.points, &desc.motion));
-    let Some((times, keys)) = moving(keys, center) else {
+    let (now, motion) = desc.keys();
+    let keys = shutter.and_then(|shutter| shutter.keys(&now, &motion));
+    let timed = keys.and_then(|keys| Some((Times::new(keys.iter().map(|key| key.0).collect())?, keys)));
+    let Some((times, keys)) = timed else {
         let blas = Blas::rounds(&rounds.balls, segments);
         return (rounds, blas);
     };
-    let keys: Vec<_> = keys.into_iter().map(|points| balls(&mut points.into_iter())).collect();
+    let keys: Vec<_> = keys.iter().map(|(_, (points, radii))| balls(&mut relative(points, center), radii)).collect();
     let blas = Blas::moving_rounds(times.clone(), &keys, segments);
     rounds.motion = Some(RoundMotion { times, keys }.into());
     (rounds, blas)

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::desc::graph::{
-    Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value, ValueId, finite,
+    Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value, ValueId,
+    finite,
 };
 use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, TextureTransform, Wrap};
 use crate::error::{Place, Warnings};

@@ -27,9 +27,9 @@ pub use gabor::{Gabor, GaborSockets, GaborValue};
 pub use gradient::Gradient;
 pub use magic::Magic;
 pub use noise::{Noise, NoiseKind, NoiseSockets};
+pub use vector_noise::vector_noise;
 pub use voronoi::{Scatter, Voronoi, VoronoiFeature, VoronoiMetric, VoronoiSockets, VoronoiValue};
 pub use wave::{Wave, WaveDirection, WaveProfile, WaveSockets};
-pub use vector_noise::vector_noise;
 pub use white_noise::{WhiteNoise, cell};
 pub use worley::{Worley, worley};
 

@@ -292,7 +292,10 @@ mod tests {
         };
         let (scene, said) = load(&camera("PANO"));
         assert!(matches!(scene.cameras[0].projection, ProjectionDesc::Equirectangular { .. }), "{said}");
-        assert_eq!((scene.render.framing.camera.as_deref(), scene.render.framing.resolution), (Some("/root/Cam"), Some([200, 100])));
+        assert_eq!(
+            (scene.render.framing.camera.as_deref(), scene.render.framing.resolution),
+            (Some("/root/Cam"), Some([200, 100]))
+        );
         let (scene, _) = load(&camera("ORTHO"));
         let ProjectionDesc::Orthographic { half_width, half_height } = scene.cameras[0].projection else { panic!() };
         assert_eq!([half_width, half_height], [2.5, 1.25]);

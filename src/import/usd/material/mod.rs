@@ -96,12 +96,7 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(
-        reading: &'a Reading<'a>,
-        images: Images,
-        per_instance: BTreeSet<Arc<str>>,
-        aovs: Vec<AovDesc>,
-    ) -> Self {
+    pub fn new(reading: &'a Reading<'a>, images: Images, per_instance: BTreeSet<Arc<str>>, aovs: Vec<AovDesc>) -> Self {
         Self {
             reading,
             images,

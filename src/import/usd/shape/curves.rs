@@ -32,6 +32,8 @@ pub(in super::super) struct Curves {
     pub(super) from_hermite: bool,
     pub(super) primvars: Primvars,
     motion: Vec<Motion<Vec<[f32; 3]>>>,
+    /// Widths at each of those times; empty where they stay.
+    moving_widths: Vec<Data<1>>,
 }
 
 /// Reads curves of schema `kind` that follow the skeleton of `skin`; `None`, with a warning, where there are none.
@@ -48,7 +50,8 @@ pub(super) fn read(
     let token = |name: &str| reading.value::<Token>(prim, name);
     let (mut basis, mut wrap) = (Basis::Linear, Wrap::Open);
     let shutter = reading.shutter.get();
-    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let of_widths = points::width_attribute(reading, prim);
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref(), Some(&of_widths));
     let mut motion = shutter.map_or_else(Vec::new, moved);
     if let Some(deformer) = &deformer {
         points = deformer.points(points, reading.time);
@@ -95,6 +98,7 @@ pub(super) fn read(
     }
     let mut primvars = primvar::read(reading, prim, inherited);
     let mut widths = points::widths(reading, prim, &mut primvars);
+    let mut moving_widths = points::moving_widths(reading, &of_widths, widths.as_ref(), &motion);
     if primvars.normals.is_none() {
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
     }
@@ -103,13 +107,13 @@ pub(super) fn read(
     }
     if from_hermite {
         // The points are the ends of the pieces.
-        widths.iter_mut().for_each(Data::at_joints);
+        widths.iter_mut().chain(&mut moving_widths).for_each(Data::at_joints);
         primvars.uvs.iter_mut().for_each(Data::at_joints);
         primvars.normals.iter_mut().for_each(Data::at_joints);
         primvars.color.iter_mut().for_each(Data::at_joints);
         primvars.opacity.iter_mut().for_each(Data::at_joints);
     }
-    Some(Curves { points, counts, basis, wrap, widths, primvars, motion, from_hermite })
+    Some(Curves { points, counts, basis, wrap, widths, primvars, motion, moving_widths, from_hermite })
 }
 
 /// Cubic pieces between points with tangents.
@@ -138,7 +142,7 @@ fn as_bezier(points: &[[f32; 3]], tangents: &[[f32; 3]], counts: &[i32]) -> (Vec
 
 impl Curves {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { mut points, counts, basis, wrap, widths, primvars, motion, .. } = self;
+        let Self { mut points, counts, basis, wrap, widths, primvars, motion, moving_widths, .. } = self;
         let bad = mend_points(&mut points);
         let curves = lay_out(&counts, points.len(), basis, wrap, place, warnings);
         let LaidOut { curves, are_all } = curves;
@@ -150,6 +154,10 @@ impl Curves {
         // Values for curves that are left out can't fit, which is not to be told once more.
         let mut of_values = Warnings::new();
         let widths = widths.and_then(|data| data.fit(&sizes, place, &mut of_values));
+        // What does not fit at the frame does not at other times either.
+        let fitting = |data: Data<1>| data.fit(&sizes, place, &mut Warnings::new());
+        let moving: Option<Vec<_>> = moving_widths.into_iter().map(fitting).collect();
+        let moving = Moving { points: &motion, widths: moving.unwrap_or_default() };
         let mut channels = Channels::new(primvars, &sizes, wants, place, &mut of_values);
         if are_all {
             warnings.extend(of_values);
@@ -169,9 +177,9 @@ impl Curves {
         }
         let set = Set { curves: &curves, lines };
         if normals.is_some() {
-            set.ribbons(channels, wants, place, warnings)
+            set.ribbons(channels, &moving, wants, place, warnings)
         } else {
-            set.strands(channels, &motion, wants, place, warnings)
+            set.strands(channels, &moving, wants, place, warnings)
         }
     }
 }
@@ -183,24 +191,61 @@ struct Set<'a> {
     lines: Vec<(usize, Vec<Joint>)>,
 }
 
+/// What curves are at other times of the shutter.
+struct Moving<'a> {
+    points: &'a [Motion<Vec<[f32; 3]>>],
+    /// At each of those times; empty where they stay.
+    widths: Vec<Channel<1>>,
+}
+
 impl Set<'_> {
-    fn ribbons(self, channels: Channels, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let mut ribbons = Ribbons::default();
-        for (i, joints) in &self.lines {
-            ribbons.push(*i as u32, joints, self.curves[*i].is_closed());
-        }
-        let Ribbons { points, normals, triangles, origins } = ribbons;
+    fn ribbons(
+        self,
+        channels: Channels,
+        moving: &Moving<'_>,
+        wants: &Wants,
+        place: &Place,
+        warnings: &mut Warnings,
+    ) -> Option<Built> {
+        let of = |lines: &[(usize, Vec<Joint>)]| {
+            let mut ribbons = Ribbons::default();
+            for (i, joints) in lines {
+                ribbons.push(*i as u32, joints, self.curves[*i].is_closed());
+            }
+            ribbons
+        };
+        let motion = (0..moving.points.len()).map(|key| {
+            let lines: Vec<_> =
+                self.lines.iter().map(|(i, joints)| (*i, self.moved(*i, joints, moving, key))).collect();
+            Motion { time: moving.points[key].time, value: of(&lines).points }
+        });
+        let motion = motion.collect();
+        let Ribbons { points, normals, triangles, origins } = of(&self.lines);
         let normals = Channel { interpolation: Interpolation::Vertex, values: normals, indices: None };
         let channels = Channels { normals: Some(normals), ..self.along(&origins, &channels) };
         let triangles = Triangles { points: triangles, corners: None, faces: None };
-        let surface = Surface { points, triangles, channels, slots: None, motion: Vec::new() };
+        let surface = Surface { points, triangles, channels, slots: None, motion };
         surface.finish(wants, place, warnings).map(Built::Mesh)
+    }
+
+    /// The joints of curve `index` as they are at a key of the motion; ribbons face what they face at the frame.
+    fn moved(&self, index: usize, joints: &[Joint], moving: &Moving<'_>, key: usize) -> Vec<Joint> {
+        let (curve, points) = (&self.curves[index], &moving.points[key].value);
+        let at = |joint: &Joint| {
+            let piece = curve.piece(joint.at.0 as usize, |i| points[i]);
+            let (center, tangent) = (piece.at(joint.at.1).into(), piece.tangent(joint.at.1).into());
+            let radius = moving.widths.get(key).map_or(joint.radius, |widths| radius(curve, widths, index, joint.at));
+            Joint { center, tangent, radius, ..*joint }
+        };
+        let mut joints: Vec<Joint> = joints.iter().map(at).collect();
+        curve.soften(&mut joints);
+        joints
     }
 
     fn strands(
         self,
         channels: Channels,
-        motion: &[Motion<Vec<[f32; 3]>>],
+        moving: &Moving<'_>,
         wants: &Wants,
         place: &Place,
         warnings: &mut Warnings,
@@ -238,9 +283,15 @@ impl Set<'_> {
             };
             Motion { time: m.time, value: origins.iter().map(point).collect() }
         };
-        let motion = motion.iter().map(at).collect();
+        let motion = moving.points.iter().map(at).collect();
+        let radii_of = |widths: &Channel<1>| {
+            let one =
+                |&(curve, at): &(u32, (u32, f32))| radius(&self.curves[curve as usize], widths, curve as usize, at);
+            origins.iter().map(one).collect()
+        };
+        let radii_motion = moving.widths.iter().map(radii_of).collect();
         let channels = self.along(&origins, &channels);
-        let rounds = Rounds { points, radii, strands, channels, motion };
+        let rounds = Rounds { points, radii, strands, channels, motion, radii_motion };
         Some(Built::Rounds(rounds.finish(wants, place, warnings)))
     }
 
@@ -317,7 +368,7 @@ fn line(
             let joint = Joint {
                 center: piece.at(t).into(),
                 tangent: piece.tangent(t).into(),
-                radius: 0.5 * width(at).max(0.0),
+                radius: widths.map_or(0.5, |widths| radius(curve, widths, index, at)),
                 facing: facing(at),
                 at,
             };
@@ -326,6 +377,11 @@ fn line(
     }
     curve.soften(&mut joints);
     joints
+}
+
+/// Half the width at a place along a curve, which is the prim's curve `index`.
+fn radius(curve: &Curve, widths: &Channel<1>, index: usize, at: (u32, f32)) -> f32 {
+    0.5 * curve.value(widths, index, at)[0].max(0.0)
 }
 
 /// Values at places along curves.

@@ -63,7 +63,7 @@ pub(super) fn read(
     if let Some(deformer) = &deformer {
         primvars.normals = deformer.of_surface(primvars.normals, &indices);
     }
-    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref(), None);
     let motion = shutter.map_or_else(Vec::new, moved);
     Some(Mesh {
         counts,
@@ -103,7 +103,7 @@ pub(super) fn read_tetrahedra(
         primvars.normals = primvar::array(reading, &prim.attribute("normals"), triples, Interpolation::Vertex);
     }
     let deformer = skin.and_then(|bound| Deformer::of(reading, prim, bound, points.len()));
-    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref(), None);
     let motion = shutter.map_or_else(Vec::new, moved);
     if let Some(deformer) = &deformer {
         primvars.normals = deformer.of_surface(primvars.normals, &indices);

@@ -1,7 +1,7 @@
 //! Points at other times of the shutter.
 
 use openusd::sdf::Value;
-use openusd::usd::{Prim, TimeCode};
+use openusd::usd::{Attribute, Prim, TimeCode};
 
 use super::super::flow::Flow;
 use super::super::retime;
@@ -35,24 +35,30 @@ impl Flowing {
 /// The points of `prim`, of which there are `count`, at the ends of `shutter` and at the samples between
 /// them; the interval is in frames after the one that is read. Velocities come before samples. Empty for
 /// points that stand still, and where their number changes. What `deformer` deforms has no velocities: those are
-/// of the points as modelled.
+/// of the points as modelled. Where the attribute `beside` changes there are keys at its samples, too, though the
+/// points stand still.
 pub(super) fn read(
     reading: &Reading<'_>,
     prim: &Prim,
     shutter: [f64; 2],
     count: usize,
     deformer: Option<&Deformer<'_>>,
+    beside: Option<&Attribute>,
 ) -> Vec<Motion<Vec<[f32; 3]>>> {
     let attribute = prim.attribute("points");
+    let beside = beside.filter(|attribute| varies(attribute));
     let now = reading.time.value();
     let [open, close] = shutter.map(|frame| now + frame);
     let deforms = deformer.and_then(|deformer| deformer.samples(open, close));
     if deformer.is_none()
         && let Some(flowing) = flowing(reading, prim, count)
     {
-        return shutter.map(|time| Motion { time, value: flowing.at(TimeCode::new(now + time)) }).into();
+        let mut times = retime::samples(reading, beside.map_or(&[], std::slice::from_ref), open, close);
+        times.extend([open, close]);
+        let key = |time: f64| Motion { time: time - now, value: flowing.at(TimeCode::new(time)) };
+        return in_order(times).into_iter().map(key).collect();
     }
-    if deforms.is_none() && !attribute.value_might_be_time_varying().unwrap_or(false) {
+    if deforms.is_none() && beside.is_none() && !varies(&attribute) {
         return Vec::new();
     }
     let read = |time: f64| {
@@ -64,15 +70,27 @@ pub(super) fn read(
             None => points,
         })
     };
-    let mut times = retime::samples(reading, std::slice::from_ref(&attribute), open, close);
+    let sampled: Vec<Attribute> = std::iter::once(&attribute).chain(beside).cloned().collect();
+    let mut times = retime::samples(reading, &sampled, open, close);
     times.extend(deforms.into_iter().flatten());
     times.extend([open, close]);
-    times.sort_by(f64::total_cmp);
-    times.dedup();
+    let times = in_order(times);
     let motion: Option<Vec<_>> =
         times.iter().map(|&time| read(time).map(|value| Motion { time: time - now, value })).collect();
     motion.unwrap_or_else(|| {
         reading.warn(attribute.path(), "the number of points changes within the shutter; they stand still");
         Vec::new()
     })
+}
+
+/// True for what may have another value at another time.
+pub(super) fn varies(attribute: &Attribute) -> bool {
+    attribute.value_might_be_time_varying().unwrap_or(false)
+}
+
+/// Times as they follow each other, each once.
+fn in_order(mut times: Vec<f64>) -> Vec<f64> {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }

@@ -1,7 +1,7 @@
 //! UsdGeomPoints as balls.
 
 use openusd::sdf::Value;
-use openusd::usd::Prim;
+use openusd::usd::{Attribute, Prim, TimeCode};
 use openusd_schemas::geom::{Interpolation, Primvar};
 
 use super::super::skel::{Bound, Deformer};
@@ -21,6 +21,8 @@ pub(in super::super) struct Points {
     widths: Option<Data<1>>,
     pub(super) primvars: Primvars,
     motion: Vec<Motion<Vec<[f32; 3]>>>,
+    /// At each of those times; empty where they stay.
+    moving_widths: Vec<Data<1>>,
 }
 
 /// Reads points that follow the skeleton of `skin`; `None`, with a warning, where there are none.
@@ -30,13 +32,15 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim, inherited: &[Primvar], sk
     let mut primvars = primvar::read(reading, prim, inherited);
     let widths = widths(reading, prim, &mut primvars);
     let shutter = reading.shutter.get();
-    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref());
+    let of_widths = width_attribute(reading, prim);
+    let moved = |shutter| motion::read(reading, prim, shutter, points.len(), deformer.as_ref(), Some(&of_widths));
     let motion = shutter.map_or_else(Vec::new, moved);
+    let moving_widths = moving_widths(reading, &of_widths, widths.as_ref(), &motion);
     let points = match &deformer {
         Some(deformer) => deformer.points(points, reading.time),
         None => points,
     };
-    Some(Points { points, widths, primvars, motion })
+    Some(Points { points, widths, primvars, motion, moving_widths })
 }
 
 /// Widths of points and curves: the primvar comes before the attribute.
@@ -47,21 +51,45 @@ pub(super) fn widths(reading: &Reading<'_>, prim: &Prim, primvars: &mut Primvars
     if widths.is_none() {
         reading.warn(prim.path(), "it has no widths; 1 is used, as Hydra does");
     }
-    if reading.shutter.get().is_some() && attribute.value_might_be_time_varying().unwrap_or(false) {
-        reading.warn(prim.path(), "its widths change while the shutter is open; those of the frame are used");
-    }
     widths
+}
+
+/// The attribute that holds the widths of `prim` itself.
+pub(super) fn width_attribute(reading: &Reading<'_>, prim: &Prim) -> Attribute {
+    let primvar = "primvars:widths";
+    let is_primvar = reading.names(prim).iter().any(|name| name.as_str() == primvar);
+    prim.attribute(if is_primvar { primvar } else { "widths" })
+}
+
+/// The widths in `attribute`, which are `now` at the frame, at the times of `motion`; empty where they do not change.
+pub(super) fn moving_widths<T>(
+    reading: &Reading<'_>,
+    attribute: &Attribute,
+    now: Option<&Data<1>>,
+    motion: &[Motion<T>],
+) -> Vec<Data<1>> {
+    let Some(now) = now.filter(|_| !motion.is_empty() && motion::varies(attribute)) else { return Vec::new() };
+    let at = |m: &Motion<T>| {
+        let time = TimeCode::new(reading.time.value() + m.time);
+        let values = reading.value_of::<Value>(attribute, time).and_then(scalars)?;
+        (values.len() == now.values.len()).then(|| Data { values, ..now.clone() })
+    };
+    motion.iter().map(at).collect::<Option<Vec<_>>>().unwrap_or_else(|| {
+        reading.warn(attribute.path(), "the number of widths changes within the shutter; those of the frame are used");
+        Vec::new()
+    })
 }
 
 impl Points {
     pub fn build(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> Option<Built> {
-        let Self { points, widths, primvars, motion } = self;
+        let Self { points, widths, primvars, motion, moving_widths } = self;
         let count = points.len();
         let counts = Counts { faces: 1, joints: count, points: count, corners: count };
-        let radii = match widths.and_then(|data| data.fit(&counts, place, warnings)) {
-            Some(widths) => by_point(widths, count).into_iter().map(|[width]| 0.5 * width).collect(),
-            None => vec![0.5; count],
-        };
+        let radii = |widths| by_point(widths, count).into_iter().map(|[width]| 0.5 * width).collect::<Vec<f32>>();
+        // What does not fit at the frame does not at other times either, which is not to be told again.
+        let fitting = |data: Data<1>| data.fit(&counts, place, &mut Warnings::new()).map(radii);
+        let moving: Option<Vec<_>> = moving_widths.into_iter().map(fitting).collect();
+        let radii = widths.and_then(|data| data.fit(&counts, place, warnings)).map_or_else(|| vec![0.5; count], radii);
         let is_sound = |&i: &usize| Vec3::from(points[i]).is_finite() && radii[i].is_finite() && radii[i] > 0.0;
         let kept: Vec<usize> = (0..count).filter(is_sound).collect();
         if kept.len() < count {
@@ -86,9 +114,15 @@ impl Points {
             strands: Vec::new(),
             channels,
             motion: motion.into_iter().map(|m| Motion { time: m.time, value: kept.values(m.value) }).collect(),
+            radii_motion: moving.into_iter().flatten().map(|radii| not_negative(kept.values(radii))).collect(),
         };
         Some(Built::Rounds(rounds.finish(wants, place, warnings)))
     }
+}
+
+/// Nothing is less than a point.
+fn not_negative(radii: Vec<f32>) -> Vec<f32> {
+    radii.into_iter().map(|radius| if radius > 0.0 { radius } else { 0.0 }).collect()
 }
 
 /// One value for each of `count` points.

@@ -17,11 +17,13 @@ pub(super) struct Rounds {
     /// One value for each point, or one for all.
     pub channels: Channels,
     pub motion: Vec<Motion<Vec<[f32; 3]>>>,
+    /// At each of those times; empty where radii stay.
+    pub radii_motion: Vec<Vec<f32>>,
 }
 
 impl Rounds {
     pub fn finish(self, wants: &Wants, place: &Place, warnings: &mut Warnings) -> RoundsDesc {
-        let Self { points, radii, strands, channels, motion } = self;
+        let Self { points, radii, strands, channels, motion, radii_motion } = self;
         let Channels { uvs, color, opacity, named, .. } = channels;
         let count = points.len();
         let uvs = uv_sets(uvs, wants, place, warnings, |channel| match channel {
@@ -46,6 +48,7 @@ impl Rounds {
             attributes: named.into_iter().map(|(name, channel)| (name, by_point(channel, count))).collect(),
             material_slots: None,
             motion,
+            radii_motion,
         }
     }
 }

@@ -95,13 +95,19 @@ fn heights_bend_the_normal_by_their_slope() {
              def Shader \"x\" {{ uniform token info:id = \"ND_noise3d_float\"
                 float outputs:out }}"
         );
-        let read = mtlx_in(folder.path(), OPEN_PBR, "normal3f inputs:geometry_normal.connect = </m/n.outputs:out>", &nodes);
+        let read =
+            mtlx_in(folder.path(), OPEN_PBR, "normal3f inputs:geometry_normal.connect = </m/n.outputs:out>", &nodes);
         assert_eq!(read.warnings, "", "{node}");
         let m = read.material();
-        let reliefs: Vec<Relief> = m.graph.ops().iter().filter_map(|op| match op {
-            GraphOp::Relief(relief) => Some(*relief),
-            _ => None,
-        }).collect();
+        let reliefs: Vec<Relief> = m
+            .graph
+            .ops()
+            .iter()
+            .filter_map(|op| match op {
+                GraphOp::Relief(relief) => Some(*relief),
+                _ => None,
+            })
+            .collect();
         let known = |id| m.graph.known(id).map(|value| value[0]);
         let scales: Vec<_> = reliefs.iter().map(|relief| known(relief.scale)).collect();
         (m.normal.is_some(), scales)
