@@ -314,11 +314,7 @@ fn rounds_grow_while_the_shutter_is_open() {
         builder.rounds(rounds, material);
         look(&mut builder, DAffine3::IDENTITY);
         let found = picture(&builder.desc, SIZE, &boxed("combined", 2048));
-        // Seen from a metre away, a ball of radius r reaches as far as r / √(1 − r²).
-        let covered = |x: f64, y: f64| {
-            let d = x.hypot(y);
-            ((large - d / (1.0 + d * d).sqrt()) / (large - small)).clamp(0.0, 1.0)
-        };
+        let covered = |x: f64, y: f64| ((large - x.hypot(y)) / (large - small)).clamp(0.0, 1.0);
         let place = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(SIZE) - 1.0;
         let middle = SIZE / 2;
         let expected: Vec<f64> = (0..SIZE).map(|x| covered(place(x), place(middle))).collect();

@@ -246,7 +246,10 @@ impl Job<'_> {
         let name = scene::path(args).display().to_string();
         let metadata = job::metadata(name, self.frame, prepared, rendered, settings, warnings);
         let picture = film.develop();
-        let options = exr::Options { half: settings.half, ..exr::Options::default() };
+        let is_part = prepared.whole != scene.size || prepared.corner != [0; 2];
+        let window = is_part.then_some(exr::Window { corner: prepared.corner, whole: prepared.whole });
+        let pixel_aspect = self.shot.framing.pixel_aspect as f32;
+        let options = exr::Options { half: settings.half, window, pixel_aspect, ..exr::Options::default() };
         let part = |product: &ProductDesc| picture.part(&scene.passes.layers_of(&product.passes));
         let pictures = &self.shot.pictures;
         let saved = match pictures.first() {

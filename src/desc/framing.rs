@@ -15,8 +15,8 @@ pub struct FramingDesc {
     pub pixel_aspect: f64,
     /// What a picture of another shape than the camera's frame shows.
     pub conform: Conform,
-    /// The part of the picture that is wanted, in shares of it: left, top, right and lower edge, 0 to 1. The pixels
-    /// are those whose centres are within.
+    /// The part of the picture that is wanted, in shares of it: left, top, right and lower edge, 0 to 1 in the frame and
+    /// beyond it where more is to be seen. The pixels are those whose centres are within.
     pub window: Option<[f64; 4]>,
     /// What the camera has and the picture does not show.
     pub off: EffectsOff,

@@ -64,19 +64,22 @@ impl Default for RenderDesc {
 }
 
 impl RenderDesc {
-    /// The part of a picture of `whole` pixels that is wanted: left, top, width and height.
-    pub fn part(&self, whole: [u32; 2]) -> Option<[u32; 4]> {
-        if self.crop.is_some() {
-            return self.crop;
+    /// The part of a picture of `whole` pixels that is wanted: its upper left pixel, and width and height.
+    pub fn part(&self, whole: [u32; 2]) -> Option<([i32; 2], [u32; 2])> {
+        if let Some([left, top, width, height]) = self.crop {
+            return Some(([left, top].map(|n| i32::try_from(n).unwrap_or(i32::MAX)), [width, height]));
         }
         let [left, top, right, bottom] = self.framing.window?;
         // The first pixel whose centre is not before the edge.
-        let pixel = |edge: f64, count: u32| (edge * f64::from(count) - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
+        let pixel = |edge: f64, count: u32| (edge * f64::from(count) - 0.5).ceil().clamp(-FAR, FAR) as i32;
         let (x, y) = (pixel(left, whole[0]), pixel(top, whole[1]));
-        let width = pixel(right, whole[0]).saturating_sub(x);
-        Some([x, y, width, pixel(bottom, whole[1]).saturating_sub(y)])
+        let size = [pixel(right, whole[0]) - x, pixel(bottom, whole[1]) - y];
+        Some(([x, y], size.map(|n| n.max(0) as u32)))
     }
 }
+
+/// No picture has pixels farther from its corner.
+const FAR: f64 = 1e9;
 
 #[cfg(test)]
 mod tests {
@@ -86,13 +89,15 @@ mod tests {
     fn a_window_has_the_pixels_whose_centres_are_within() {
         let framed = |window| FramingDesc { window: Some(window), ..FramingDesc::default() };
         let part = |window, whole| RenderDesc { framing: framed(window), ..RenderDesc::default() }.part(whole);
-        assert_eq!(part([0.0, 0.0, 1.0, 1.0], [7, 5]), Some([0, 0, 7, 5]));
-        assert_eq!(part([0.25, 0.5, 1.0, 1.0], [8, 4]), Some([2, 2, 6, 2]));
+        assert_eq!(part([0.0, 0.0, 1.0, 1.0], [7, 5]), Some(([0, 0], [7, 5])));
+        assert_eq!(part([0.25, 0.5, 1.0, 1.0], [8, 4]), Some(([2, 2], [6, 2])));
         // Centres at 0.5, 1.5, 2.5 and 3.5 of 4.
-        assert_eq!(part([0.2, 0.1, 0.6, 0.9], [4, 4]), Some([1, 0, 1, 4]));
-        assert_eq!(part([0.2, 0.2, 0.3, 0.3], [4, 4]), Some([1, 1, 0, 0]));
+        assert_eq!(part([0.2, 0.1, 0.6, 0.9], [4, 4]), Some(([1, 0], [1, 4])));
+        assert_eq!(part([0.2, 0.2, 0.3, 0.3], [4, 4]), Some(([1, 1], [0, 0])));
+        // Beyond the frame.
+        assert_eq!(part([-0.5, 0.0, 1.25, 1.5], [8, 4]), Some(([-4, 0], [14, 6])));
         let crop = Some([1, 2, 3, 4]);
         let both = RenderDesc { crop, framing: framed([0.0; 4]), ..RenderDesc::default() };
-        assert_eq!(both.part([9, 9]), crop);
+        assert_eq!(both.part([9, 9]), Some(([1, 2], [3, 4])));
     }
 }

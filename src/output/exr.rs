@@ -32,11 +32,25 @@ pub struct Options {
     pub view_layer: String,
     /// Lossless packing.
     pub compression: Compression,
+    /// Where in a larger picture this one lies; `None` for one that is all of it.
+    pub window: Option<Window>,
+    /// Width of a pixel over its height.
+    pub pixel_aspect: f32,
+}
+
+/// Where a picture lies in a larger one: the file's data window in its display window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Place of its upper left pixel, beyond the larger picture where it shows more.
+    pub corner: [i32; 2],
+    /// Width and height of the larger one.
+    pub whole: [u32; 2],
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { half: false, view_layer: "ViewLayer".to_owned(), compression: Compression::default() }
+        let compression = Compression::default();
+        Self { half: false, view_layer: "ViewLayer".to_owned(), compression, window: None, pixel_aspect: 1.0 }
     }
 }
 
@@ -89,8 +103,10 @@ fn to_exr(
     let mut layers: exr::image::Layers<AnyChannels<FlatSamples>> =
         picture.layers.iter().map(|layer| to_exr_layer(size, layer, options)).collect();
     describe(&mut layers[0].attributes, metadata, options);
-    let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions(size));
+    let whole = options.window.map_or(size, |window| (window.whole[0] as usize, window.whole[1] as usize));
+    let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions(whole));
     attributes.chromaticities = Some(REC_709);
+    attributes.pixel_aspect = options.pixel_aspect;
     Image { attributes, layer_data: layers }
 }
 
@@ -118,6 +134,9 @@ fn to_exr_layer(size: (usize, usize), layer: &Layer, options: &Options) -> ExrLa
     });
     let channels = AnyChannels::sort(channels.collect());
     let mut attributes = LayerAttributes::named(text(&part));
+    if let Some(Window { corner: [left, top], .. }) = options.window {
+        attributes.layer_position = exr::math::Vec2(left, top);
+    }
     let space = match layer.storage {
         Storage::Color => "lin_rec709_scene",
         Storage::Data => "data",

@@ -58,6 +58,10 @@ pub struct Prepared {
     pub scene: Scene,
     /// Name of the camera that was chosen.
     pub camera: Arc<str>,
+    /// Width and height of the whole picture, of which the scene may show a part.
+    pub whole: [u32; 2],
+    /// Where in it the upper left pixel of that part is.
+    pub corner: [i32; 2],
     /// Time spent on the acceleration structure.
     pub build_time: Duration,
     /// What was replaced or left out.
@@ -161,7 +165,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         asked,
         background_aovs,
     };
-    Ok(Prepared { scene, camera: camera_desc.name, build_time, warnings })
+    let corner = desc.render.part(whole).map_or([0; 2], |(corner, _)| corner);
+    Ok(Prepared { scene, camera: camera_desc.name, whole, corner, build_time, warnings })
 }
 
 impl Scene {
@@ -189,13 +194,21 @@ impl Scene {
 
 /// Size of the part of a picture of `whole` that is wanted.
 fn cropped(desc: &SceneDesc, whole: [u32; 2]) -> Result<[u32; 2]> {
-    let Some([left, top, width, height]) = desc.render.part(whole) else { return Ok(whole) };
-    let fits = |start: u32, size: u32, whole: u32| size > 0 && start.checked_add(size).is_some_and(|end| end <= whole);
-    if fits(left, width, whole[0]) && fits(top, height, whole[1]) {
-        return Ok([width, height]);
+    let Some((corner, size)) = desc.render.part(whole) else { return Ok(whole) };
+    let fits = |axis: usize| {
+        let [start, size, whole] = [i64::from(corner[axis]), i64::from(size[axis]), i64::from(whole[axis])];
+        start >= 0 && start + size <= whole
+    };
+    // A border is drawn in the picture, a data window may go beyond it.
+    let is_window = desc.render.crop.is_none();
+    let [width, height] = size;
+    let is_picture = width > 0 && height > 0 && u64::from(width) * u64::from(height) <= camera::MAX_PIXELS;
+    if is_picture && (is_window || (fits(0) && fits(1))) {
+        return Ok(size);
     }
-    let [w, h] = whole;
-    let what = format!("the part of {width}x{height} pixels at ({left}, {top}) is not within the picture of {w}x{h}");
+    let ([left, top], [w, h]) = (corner, whole);
+    let why = if is_picture { "is not within" } else { "is no picture: it is part of" };
+    let what = format!("the part of {width}x{height} pixels at ({left}, {top}) {why} the picture of {w}x{h}");
     Err(Error::invalid(&desc.place, what))
 }
 

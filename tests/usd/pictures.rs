@@ -39,7 +39,7 @@ fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
     let told = said(&output);
     assert!(output.status.success(), "{told}");
     // One render for each view, and none is told as left out.
-    for line in ["front.exr, data.exr: 8x4, camera Front", "away.exr: 6x5, camera Away", "part.exr: 8x2, camera Front"]
+    for line in ["front.exr, data.exr: 8x4, camera Front", "away.exr: 6x5, camera Away", "part.exr: 16x2, camera Front"]
     {
         assert!(told.contains(line), "{line} is not in\n{told}");
     }
@@ -53,10 +53,16 @@ fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
     assert_eq!((away.width, away.height, names(&away)), (6, 5, vec!["Combined", "Depth"]));
     assert!(first(&away, "Combined").iter().all(|red| *red == 0.0));
     let part = read(folder, "part.exr");
-    assert_eq!((part.width, part.height, names(&part)), (8, 2, vec!["Depth"]));
-    // Pixels of one and a half units, the first of them six from the middle.
-    let row: Vec<bool> = first(&part, "Depth")[..8].iter().map(|depth| *depth < 100.0).collect();
-    assert_eq!(row[..6], [false, false, false, true, true, false], "{row:?}");
+    assert_eq!((part.width, part.height, names(&part)), (16, 2, vec!["Depth"]));
+    // Pixels of one and a half units, the first of them twelve from the middle: the cube is at −10 to −8.
+    let row: Vec<usize> = (0..16).filter(|x| first(&part, "Depth")[*x] < 100.0).collect();
+    assert_eq!(row, [1, 2, 7, 8]);
+    let meta = ::exr::meta::MetaData::read_from_file(folder.join("part.exr"), false).unwrap();
+    let header = &meta.headers[0];
+    let display = header.shared_attributes.display_window;
+    assert_eq!((display.position.x(), display.position.y(), display.size.x(), display.size.y()), (0, 0, 8, 4));
+    let data = header.own_attributes.layer_position;
+    assert_eq!((data.x(), data.y(), header.shared_attributes.pixel_aspect), (-4, 2, 1.5));
 }
 
 #[test]
@@ -67,7 +73,7 @@ fn what_is_typed_counts_for_every_picture() {
     let told = said(&output);
     assert!(output.status.success(), "{told}");
     // What is left of the differences is the part that one shows.
-    assert!(told.contains("front.exr, away.exr, data.exr: 4x2") && told.contains("part.exr: 4x1"), "{told}");
+    assert!(told.contains("front.exr, away.exr, data.exr: 4x2") && told.contains("part.exr: 8x1"), "{told}");
     let output = render(folder, &["--spp", "1", "-o", "one.exr"]);
     let told = said(&output);
     assert!(output.status.success() && told.contains("asks for 4 pictures; one is written"), "{told}");
@@ -84,7 +90,7 @@ fn primvars_are_shown_where_shapes_have_them() {
     let output = render(folder, &["--spp", "64", "--filter", "box:1"]);
     let told = said(&output);
     assert!(output.status.success(), "{told}");
-    for what in ["/Render/Wet: 1 of 2 shapes have no primvar wet", "/Render/Id: 1 of 2 shapes have no primvar part_id"]
+    for what in ["/Render/Wet: 2 of 3 shapes have no primvar wet", "/Render/Id: 2 of 3 shapes have no primvar part_id"]
     {
         assert!(told.contains(what), "{what} is not in\n{told}");
     }

@@ -13,7 +13,7 @@ const DEFAULT_WIDTH: u32 = 960;
 /// Aspect of a picture that nobody gave one.
 const DEFAULT_ASPECT: f64 = 16.0 / 9.0;
 /// Largest number of pixels; the film of one pass alone would be 64 GiB beyond it.
-const MAX_PIXELS: u64 = 1 << 32;
+pub(super) const MAX_PIXELS: u64 = 1 << 32;
 
 /// The camera that `view` names, or the scene's first, or one that frames the scene; and the
 /// picture's size.
@@ -119,7 +119,7 @@ fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) 
         clip_far: desc.clip_far as f32,
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]) * render.framing.pixel_aspect;
-    let corner = render.part(size).map_or([0.0; 2], |[left, top, ..]| [left as f32, top as f32]);
+    let corner = render.part(size).map_or([0.0; 2], |(corner, _)| corner.map(|n| n as f32));
     let projection = projection(desc, view, size.map(|n| n as f32), aspect, render.framing.conform);
     let lens = desc.lens.and_then(|lens| usable_lens(&lens));
     let lens = lens.filter(|_| !matches!(projection, Projection::Panorama(_)));
