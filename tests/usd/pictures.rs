@@ -79,7 +79,7 @@ fn what_is_typed_counts_for_every_picture() {
     assert!(output.status.success() && told.contains("asks for 4 pictures; one is written"), "{told}");
     let one = read(folder, "one.exr");
     // The passes of the pictures that show the same.
-    let expected = ["Combined", "primvars:wet", "primvars:wind", "primvars:part_id"];
+    let expected = ["Combined", "primvars:wet", "primvars:wind", "primvars:part_id", "Peye", "Neye"];
     assert_eq!((one.width, one.height, names(&one)), (8, 4, expected.to_vec()));
 }
 
@@ -105,4 +105,12 @@ fn primvars_are_shown_where_shapes_have_them() {
     let layer = data.layer("primvars:wind").unwrap();
     assert_eq!(layer.channels.concat(), "RGBA");
     assert_eq!(layer.pixel(8, 3, 1)[1..], [0.0, 5.0, 1.0]);
+    // As the camera has them, nine units away.
+    let near = |layer: &str, expected: [f32; 4]| {
+        let found = data.layer(layer).unwrap().pixel(8, 3, 1);
+        assert!((1..4).all(|i| (found[i] - expected[i]).abs() < 0.1), "{layer}: {found:?}");
+        assert!((found[2] - expected[2]).abs() < 1e-5, "{layer}: {found:?}");
+    };
+    near("Peye", [0.0, 0.5, -9.0, 1.0]);
+    near("Neye", [0.0, 0.0, 1.0, 1.0]);
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::render::is_a;
+use super::shown::IN_CAMERA_SPACE;
 use super::values::Values;
 use crate::desc::{AovDesc, AovKind};
 use crate::error::Place;
@@ -15,7 +16,7 @@ const AOV_NAME: &str = "driver:parameters:aov:name";
 pub(super) struct Vars {
     /// Names of the passes, each once.
     pub passes: Vec<Arc<str>>,
-    /// Primvars that are among them, and where that is said.
+    /// AOVs that are among them, and where that is said.
     pub shown: Vec<(AovDesc, Place)>,
 }
 
@@ -30,7 +31,7 @@ impl Vars {
                 continue;
             };
             let values = Values { reading, prim: &var, path: &path };
-            if let Some(shown) = primvar(&values) {
+            if let Some(shown) = primvar(&values).or_else(|| in_camera_space(&values)) {
                 vars.add(&format!("aov:{}", shown.name));
                 vars.shown.push((shown, reading.place_of(&path)));
             } else {
@@ -62,6 +63,15 @@ fn primvar(values: &Values<'_>) -> Option<AovDesc> {
     }
     let kind = if NUMBERS.contains(&&*data) { AovKind::Value } else { AovKind::Color };
     Some(AovDesc { name: format!("primvars:{name}").into(), kind })
+}
+
+/// What Hydra has in the camera's space: no pass, but an AOV of that name.
+fn in_camera_space(values: &Values<'_>) -> Option<AovDesc> {
+    let source = values.reading.value::<String>(values.prim, "sourceName").unwrap_or_default();
+    let given = values.reading.value::<String>(values.prim, AOV_NAME).unwrap_or_default();
+    let name = [&*source, &*given, values.path.name()?].into_iter().find(|name| !name.is_empty())?;
+    let known = IN_CAMERA_SPACE.iter().find(|known| plain(known) == plain(name))?;
+    Some(AovDesc { name: (*known).into(), kind: AovKind::Color })
 }
 
 /// Values of RenderVars' `dataType` that are one number.
@@ -102,21 +112,15 @@ fn of_var(values: &Values<'_>) -> Option<String> {
             .warn(format!("there is no pass for \"{known}\": it is left out; penumbra:NAME asks for one by its name"));
         return None;
     };
-    if let Some((_, space)) = IN_OTHER_SPACES.iter().find(|(names, _)| names.contains(&&*plain(known))) {
-        values.warn(format!("\"{known}\" is {space}: rendered as {found}, in world space"));
-    }
     Some(found.into())
 }
-
-/// What Hydra has in the camera's space, and our passes in that of the world.
-const IN_OTHER_SPACES: &[(&[&str], &str)] = &[(&["neye", "peye"], "in the camera's space")];
 
 /// Names that renderers give what our passes hold, without case, spaces and underscores.
 const NAMES: &[(&[&str], &str)] = &[
     (&["ci", "c", "color", "rgb", "rgba", "beauty", "a", "alpha", "luminance"], "combined"),
     (&["z", "pz", "zdepth", "lineardepth", "cameradepth", "depthlinear", "ray:hitpz"], "depth"),
-    (&["p", "pworld", "po", "peye", "worldposition", "ray:hitp"], "position"),
-    (&["n", "nn", "normals", "neye", "worldnormal", "nworld", "ray:hitn"], "normal"),
+    (&["p", "pworld", "po", "worldposition", "ray:hitp"], "position"),
+    (&["n", "nn", "normals", "worldnormal", "nworld", "ray:hitn"], "normal"),
     (&["st", "primvars:st", "texcoord", "texcoords"], "uv"),
     (&["id", "primid", "objectid"], "object_index"),
     (&["materialid", "matid"], "material_index"),
@@ -280,12 +284,9 @@ mod tests {
             let (passes, said) = of(&[&source(name)]);
             assert!(passes.is_empty() && said.contains(&format!("/V0: there is no pass for \"{name}\"")), "{said}");
         }
-        let (passes, said) = of(&[&source("Neye"), &source("Peye")]);
-        assert_eq!((&*passes, said.lines().count()), ("normal position", 2));
-        assert!(
-            said.contains("/V1: \"Peye\" is in the camera's space: rendered as position, in world space"),
-            "{said}"
-        );
+        let (desc, said) = stage(&[&source("Neye"), "custom string driver:parameters:aov:name = \"Peye\""]);
+        assert_eq!((desc.passes.join(" "), &*said), ("aov:Neye aov:Peye".to_string(), ""));
+        assert!(desc.aovs.iter().all(|aov| aov.kind == AovKind::Color));
     }
 
     #[test]

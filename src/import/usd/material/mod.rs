@@ -222,7 +222,7 @@ impl<'a> Materials<'a> {
     }
 
     fn add(&mut self, mut finished: Finished) -> u32 {
-        shown::add(&mut finished.material, &self.aovs);
+        shown::add(&mut finished.material, &self.aovs, self.reading.meters);
         finished.material.tinted = finished.colors != VertexColors::default();
         self.finished.push(finished);
         self.finished.len() as u32 - 1
