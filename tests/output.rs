@@ -200,7 +200,7 @@ fn layers_are_blenders_by_name_and_channel() {
     let picture = sample_picture(4, 4, "all");
     let names: Vec<String> =
         picture.layers.iter().map(|layer| format!("{}.{}", layer.name, layer.channels.concat())).collect();
-    // Read from a file of Blender 5.0.1, plus the three that are ours.
+    // Read from a file of Blender 5.0.1, plus those that are ours.
     let expected = [
         "Combined.RGBA",
         "Depth.Z",
@@ -218,6 +218,15 @@ fn layers_are_blenders_by_name_and_channel() {
         "Transmission Direct.RGB",
         "Transmission Indirect.RGB",
         "Transmission Color.RGB",
+        "Diffuse Light.RGB",
+        "Diffuse Light Direct.RGB",
+        "Diffuse Light Indirect.RGB",
+        "Glossy Light.RGB",
+        "Glossy Light Direct.RGB",
+        "Glossy Light Indirect.RGB",
+        "Transmission Light.RGB",
+        "Transmission Light Direct.RGB",
+        "Transmission Light Indirect.RGB",
         "Emission.RGB",
         "Environment.RGB",
         "Ambient Occlusion.RGB",

@@ -142,11 +142,16 @@ def judge_links(stage, values, answer, found):
 
 
 def judge_render(stage, render, answer, found):
-    expected = usd_looks.render(stage)
-    for key, value in (expected or {}).items():
-        ours = render[key]
-        numbers = isinstance(value, (list, float)) and ours is not None
-        found.check(near(ours, value) if numbers else ours == value, "render", f"{key} is {ours}, not {value}")
+    def judge_framing(expected, framing, name):
+        for key, value in (expected or {}).items():
+            ours = framing[key]
+            numbers = isinstance(value, (list, float)) and ours is not None
+            found.check(near(ours, value) if numbers else ours == value, name, f"{key} is {ours}, not {value}")
+
+    judge_framing(usd_looks.render(stage), render, "render")
+    pictures = usd_looks.pictures(stage)
+    for product in render["products"]:
+        judge_framing(pictures[product["name"]], product, product["name"])
 
 
 @pytest.mark.skipif(not ASSETS.is_dir(), reason=f"{ASSETS} is not there")
@@ -167,16 +172,26 @@ STAGE = """#usda 1.0
 def Scope "Render" {
     def RenderSettings "Main" {
         rel camera = </Cam>
-        rel products = </Render/One>
+        rel products = [</Render/One>, </Render/Two>]
         uniform int2 resolution = (64, 32)
         uniform token aspectRatioConformPolicy = "adjustApertureHeight"
         uniform float pixelAspectRatio = 2
     }
     def RenderProduct "One" {
+        token productName = "one.exr"
         uniform float4 dataWindowNDC = (0.25, 0, 0.75, 0.5)
+    }
+    def RenderProduct "Two" {
+        rel camera = </Other>
+        token productName = "two.exr"
+        uniform int2 resolution = (32, 32)
+        uniform float pixelAspectRatio = 1
+        uniform token aspectRatioConformPolicy = "cropAperture"
+        uniform float4 dataWindowNDC = (-0.125, -0.25, 1.125, 1.25)
     }
 }
 def Camera "Cam" {}
+def Camera "Other" {}
 def Scope "Looks" {
     def Material "Other" {
         token outputs:surface.connect = </Looks/Other/S.outputs:surface>
@@ -245,6 +260,7 @@ def test_every_kind_of_look(tmp_path):
     # What is compared can differ.
     described = read(path)["values"]
     assert described["render"]["window"] == [0.25, 0.5, 0.75, 1.0]
+    assert [product["camera"] for product in described["render"]["products"]] == ["/Cam", "/Other"]
     stage = Stage(path)
     paint = usd_looks.preview_surface(stage, stage.stage.GetPrimAtPath("/Looks/Paint"))
     kind, tint = usd_looks.value_or_texture(stage, paint, "diffuseColor", (0.18,) * 3)

@@ -118,13 +118,29 @@ def linked(prim, name, paths):
 
 
 def render(stage):
-    """The settings that the stage names: camera, resolution, shape of pixels, policy and window."""
+    """What the settings that the stage names say of the picture, or the first of their products."""
+    settings, products = of_render(stage)
+    return framing(settings, products[0] if products else None) if settings else None
+
+
+def pictures(stage):
+    """The same of each product, by the name of its picture."""
+    settings, products = of_render(stage)
+    return {product.GetAttribute("productName").Get(): framing(settings, product) for product in products}
+
+
+def of_render(stage):
+    """The settings that the stage names, `None` where there are none, and their products."""
     path = stage.stage.GetMetadata("renderSettingsPrimPath")
     settings = UsdRender.Settings.Get(stage.stage, path) if path else None
     if not settings:
-        return None
+        return None, []
     products = [stage.stage.GetPrimAtPath(target) for target in settings.GetProductsRel().GetForwardedTargets()]
-    product = next((prim for prim in products if prim and prim.IsA(UsdRender.Product)), None)
+    return settings, [prim for prim in products if prim and prim.IsA(UsdRender.Product)]
+
+
+def framing(settings, product):
+    """Camera, resolution, shape of pixels, policy and window of `product`, which may be `None`."""
 
     def get(name):
         authored = product and product.GetAttribute(name).HasAuthoredValue()
@@ -132,7 +148,7 @@ def render(stage):
 
     cameras = [prim.GetRelationship("camera").GetForwardedTargets() for prim in (product, settings.GetPrim()) if prim]
     camera = next((str(found[0]) for found in cameras if found), None)
-    left, low, right, high = np.clip(np.array(get("dataWindowNDC"), float), 0, 1)
+    left, low, right, high = np.array(get("dataWindowNDC"), float)
     window = None if [left, low, right, high] == [0, 0, 1, 1] else [left, 1 - high, right, 1 - low]
     return {
         "camera": camera,

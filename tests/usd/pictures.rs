@@ -48,7 +48,7 @@ fn each_product_has_the_camera_and_the_size_that_it_asks_for() {
     assert_eq!((front.width, front.height, names(&front)), (8, 4, vec!["Combined"]));
     // The wall is two of eight units wide, the ball is in the seventh.
     let row: Vec<bool> = first(&front, "Combined")[8..16].iter().map(|red| *red > 0.1).collect();
-    assert_eq!(row[1..7], [false, false, true, true, false, false]);
+    assert_eq!(row[1..7], [false, false, true, true, false, true]);
     let away = read(folder, "away.exr");
     assert_eq!((away.width, away.height, names(&away)), (6, 5, vec!["Combined", "Depth"]));
     assert!(first(&away, "Combined").iter().all(|red| *red == 0.0));

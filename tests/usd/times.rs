@@ -162,7 +162,8 @@ def BasisCurves "Strand" {
     uniform token type = "linear"
     int[] curveVertexCounts = [2]
     point3f[] points = [(0, 0, 0), (9, 0, 0)]
-    float[] primvars:widths.timeSamples = { 0: [2, 1], 8: [10, 1] } ( interpolation = "vertex" )
+    float[] primvars:widths ( interpolation = "vertex" )
+    float[] primvars:widths.timeSamples = { 0: [2, 1], 8: [10, 1] }
 }
 def BasisCurves "Ribbon" {
     uniform token type = "linear"

@@ -75,8 +75,8 @@ fn shutter(reading: &Reading<'_>, haul: &Haul) -> Option<[f64; 2]> {
     let cameras = haul.found.iter().filter(|found| &*found.look.kind == "Camera");
     let shutter = cameras.filter_map(of).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
     if reading.time.is_earliest_time() {
-        let what =
-            "a camera's shutter is open, but the stage has no startTimeCode, and no frame is given: nothing moves";
+        let what = "a camera's shutter is open, but the stage has no startTimeCode and endTimeCode, and no frame is given: nothing \
+             moves";
         reading.warnings.borrow_mut().push(&reading.place, what);
         return None;
     }

@@ -1,4 +1,4 @@
-//! Nodes of MaterialX that lay pictures over each other, that decide, and waves.
+//! Nodes of MaterialX that lay pictures over each other, that decide, waves and the time.
 
 use super::evaluate::Evaluator;
 use super::expr::Id;
@@ -70,8 +70,22 @@ pub(super) fn compute(e: &mut Evaluator<'_, '_>, node: usize, category: &str) ->
             let off = e.exprs.apply(F::Math(Math::Absolute), &[off]);
             e.exprs.subtract(half, off)
         }
+        "frame" => {
+            let frame = frame(e).unwrap_or(1.0);
+            e.exprs.number(frame)
+        }
+        "time" => {
+            let seconds = frame(e).unwrap_or(0.0) / e.materials.reading.stage.time_codes_per_second();
+            e.exprs.number(seconds)
+        }
         _ => return None,
     })
+}
+
+/// The time code that is read; `None` for a stage without time.
+fn frame(e: &Evaluator<'_, '_>) -> Option<f64> {
+    let time = e.materials.reading.time;
+    (!time.is_earliest_time()).then(|| time.value())
 }
 
 fn both(e: &mut Evaluator<'_, '_>, node: usize) -> [Id; 2] {

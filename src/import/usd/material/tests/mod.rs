@@ -34,8 +34,11 @@ impl Read {
 }
 
 fn read_at(folder: &Path, text: &str, path: &str) -> Read {
-    let options = ImportOptions::default();
-    let reading = stage(folder, text, &options);
+    read_with(folder, text, path, &ImportOptions::default())
+}
+
+fn read_with(folder: &Path, text: &str, path: &str, options: &ImportOptions) -> Read {
+    let reading = stage(folder, text, options);
     let path = sdf::Path::new(path).unwrap();
     let mut materials = Materials::new(&reading, Images::default(), BTreeSet::new(), Vec::new());
     materials.preload([&path]);

@@ -127,6 +127,21 @@ fn heights_bend_the_normal_by_their_slope() {
 }
 
 #[test]
+fn the_time_is_that_of_the_frame() {
+    let of = |node: &str, frame| {
+        let lines = "float inputs:base_metalness.connect = </m/c.outputs:out>";
+        let nodes = format!("def Shader \"c\" {{ uniform token info:id = \"{node}\"\nfloat outputs:out }}");
+        let folder = tempfile::tempdir().unwrap();
+        let options = ImportOptions { frame, ..ImportOptions::default() };
+        let read = read_with(folder.path(), &material_of("mtlx:", OPEN_PBR, lines, &nodes), "/m", &options);
+        read.material().metallic.factor
+    };
+    // 24 time codes a second; of a stage without time the defaults of the nodes.
+    same(&[of("ND_frame_float", Some(6.0)), of("ND_time_float", Some(6.0))], &[6.0, 0.25]);
+    same(&[of("ND_frame_float", None), of("ND_time_float", None)], &[1.0, 0.0]);
+}
+
+#[test]
 fn pictures_lie_over_each_other() {
     let none = |texture: &Procedural, _: &[Value]| -> Value { panic!("{texture:?}") };
     let of = |node: &str, fg: &str, bg: &str| {
