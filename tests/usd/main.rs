@@ -14,6 +14,7 @@ mod layers;
 mod mutation;
 mod pictures;
 mod primvars;
+mod reliefs;
 #[path = "../support/rng.rs"]
 mod rng;
 #[path = "../support/scene.rs"]
