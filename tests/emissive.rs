@@ -9,7 +9,7 @@ mod scene;
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{
+use penumbra::desc::{Blending, 
     AlphaMode, Attribute, Channel, ColorInput, ColorSpace, ConeDesc, Filter, IesDesc, IesRef, ImageDesc, InstanceDesc,
     LightKind, MaterialDesc, MeshDesc, PixelData, RoundsDesc, ScalarInput, ShapedDesc, ShapingDesc, TextureDesc,
     TextureRef, TextureTransform, Wrap,
@@ -62,6 +62,7 @@ fn square(open: Open) -> Builder {
         height: 1,
         channels: 2,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::F32(alpha),
     };
     builder.desc.images.push(image.into());

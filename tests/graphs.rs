@@ -10,7 +10,7 @@ mod scene;
 use std::f64::consts::PI;
 
 use penumbra::desc::graph::{Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Space, ValueId};
-use penumbra::desc::{
+use penumbra::desc::{Blending, 
     AlphaMode, Attribute, Channel, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc,
     NamedAttribute, NormalInput, ObjectInfo, PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
 };
@@ -237,6 +237,7 @@ fn with_image(builder: &mut Builder) -> TextureRef {
         height: 8,
         channels: 4,
         color_space: ColorSpace::Srgb,
+        blending: Blending::default(),
         pixels: PixelData::U8(texels),
     };
     builder.desc.images.push(image.into());

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use half::f16;
-use penumbra::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
+use penumbra::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
 use penumbra::error::{Place, Warnings};
 use penumbra::texture::{Image, Texture};
 
@@ -11,7 +11,8 @@ const WRAPS: [Wrap; 4] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black];
 
 fn desc(size: [u32; 2], channels: u8, color_space: ColorSpace, pixels: PixelData) -> ImageDesc {
     let place = Place::file("a.glb").at("image 0");
-    ImageDesc { name: "wood".into(), place, width: size[0], height: size[1], channels, color_space, pixels }
+    let ([width, height], blending) = (size, Blending::default());
+    ImageDesc { name: "wood".into(), place, width, height, channels, color_space, blending, pixels }
 }
 
 fn image(size: [u32; 2], channels: u8, color_space: ColorSpace, pixels: PixelData) -> Arc<Image> {

@@ -28,7 +28,7 @@ pub use aov::{AovDesc, AovKind, AovOutput, BackgroundAovs};
 pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
-pub use image::{ColorSpace, ImageDesc, PixelData};
+pub use image::{Blending, ColorSpace, ImageDesc, PixelData};
 pub use input::{Channel, ColorInput, NormalInput, ScalarInput};
 pub use layers::{AnisotropyDesc, AnisotropyLaw, CoatDesc, IridescenceDesc, SheenDesc, TranslucentDesc, VolumeDesc};
 pub use light::{

@@ -594,21 +594,32 @@ def border(folder):
     return paths
 
 
-def node_wall(folder):
-    """All function nodes by both engines: names of the tiles, how many in a row, and the two pictures."""
-    import node_lab
-
-    names, columns, rows = node_lab.wall()
+def _wall(folder, tile, names, columns, rows, spp=256):
+    """A wall of glowing tiles by both engines: names of the tiles, how many in a row, their size and the two pictures."""
     scene = bpy.context.scene
-    scene.render.resolution_x, scene.render.resolution_y = columns * node_lab.TILE, rows * node_lab.TILE
+    scene.render.resolution_x, scene.render.resolution_y = columns * tile, rows * tile
     scene.render.resolution_percentage = 100
     cycles = scene.cycles
-    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = spp, False, False
     cycles.pixel_filter_type, cycles.max_bounces = "BOX", 0
-    scene.penumbra.spp, scene.penumbra.max_bounces = 256, 0
+    scene.penumbra.spp, scene.penumbra.max_bounces = spp, 0
     paths = []
     for engine in ("CYCLES", "PENUMBRA"):
         scene.render.engine = engine
         paths.append(os.path.join(folder, f"{engine.lower()}.exr"))
         _render(paths[-1])
-    return [names, columns, node_lab.TILE, paths]
+    return [names, columns, tile, paths]
+
+
+def node_wall(folder):
+    """All function nodes."""
+    import node_lab
+
+    return _wall(folder, node_lab.TILE, *node_lab.wall())
+
+
+def image_wall(folder):
+    """All ways to look images up."""
+    import image_lab
+
+    return _wall(folder, image_lab.TILE, *image_lab.wall(folder), spp=64)

@@ -262,6 +262,7 @@ class Exporter:
             "name": material.name,
             "pass_index": material.pass_index,
             "diffuse_color": list(material.diffuse_color),
+            "displacement_method": _displacement(material),
             "bump_correction": getattr(getattr(material, "cycles", None), "use_bump_map_correction", True),
         }
         self._moves = False
@@ -327,6 +328,11 @@ class Exporter:
         """World matrix of an object that a node refers to."""
         self._moves = True
         return [list(map(float, row)) for row in obj.matrix_world]
+
+
+def _displacement(material):
+    """What becomes of a material's displacement: its own property since 4.1, and Cycles' own in some builds."""
+    return getattr(material, "displacement_method", None) or material.cycles.displacement_method
 
 
 def _key(data, asked):

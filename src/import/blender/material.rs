@@ -51,7 +51,7 @@ fn material(
         ..MaterialDesc::default()
     };
     match &data.nodes {
-        Some(tree) => nodes::surface(tree, base, images, uv_sets, warnings),
+        Some(tree) => nodes::surface(tree, base, images, uv_sets, &data.displacement_method, warnings),
         None => {
             let [r, g, b, _] = data.diffuse_color;
             let plain = ScalarInput::constant;

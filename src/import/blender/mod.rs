@@ -6,6 +6,7 @@
 //! passes in world space hold the numbers that the artist sees.
 
 mod camera;
+mod blending;
 mod colors;
 mod document;
 mod image;

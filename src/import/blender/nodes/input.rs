@@ -14,12 +14,15 @@ pub fn constant<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
 pub fn texture_coordinate<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     match output {
         "Generated" => flow.graph.leaf(Leaf::Generated),
-        "Normal" => flow.graph.leaf(Leaf::ObjectNormal),
+        "Normal" => flow.object_normal(),
         "UV" => flow.graph.uv_upwards(0),
         "Object" => object_coordinates(flow, at),
         "Camera" => flow.graph.leaf(Leaf::CameraPosition),
         "Window" => flow.graph.leaf(Leaf::Window),
-        _ => flow.graph.reflection(),
+        _ => {
+            let normal = flow.normal();
+            flow.graph.reflection(normal)
+        }
     }
 }
 
@@ -52,7 +55,7 @@ pub fn uv_set(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
 pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
     let leaf = match output {
         "Position" => Leaf::Position,
-        "Normal" => Leaf::Normal,
+        "Normal" => return flow.normal(),
         "Tangent" => Leaf::RadialTangent,
         "True Normal" => Leaf::TrueNormal,
         "Incoming" => Leaf::Incoming,
@@ -173,14 +176,14 @@ pub fn tangent_of_map(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
 /// Fresnel.
 pub fn fresnel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let ior = flow.input(at, "IOR");
-    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Normal", |flow| flow.normal());
     flow.graph.fresnel(ior, normal)
 }
 
 /// Layer Weight.
 pub fn layer_weight<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     let blend = flow.input(at, "Blend");
-    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Normal", |flow| flow.normal());
     if output == "Fresnel" { flow.graph.layer_fresnel(blend, normal) } else { flow.graph.layer_facing(blend, normal) }
 }
 

@@ -1,7 +1,7 @@
 //! Lamps: emission that is the same in all directions, and how it falls off.
 
 use super::super::light::LampShader;
-use super::closure;
+use super::closure::{self, Part};
 use super::flow::{At, Flow};
 use crate::desc::DecayLaw;
 use crate::desc::graph::ValueId;
@@ -14,12 +14,12 @@ pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
     let Some(surface) = output.node.input("Surface") else { return black };
     let mut factor = [0.0; 3];
     for part in closure::parts(flow, output, surface) {
-        if part.at.node.r#type != "ShaderNodeEmission" {
+        if !part.emits() {
             let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
             flow.warn(format!("the shader \"{name}\" ({kind}) of a lamp is not supported; it is left out"));
             continue;
         }
-        let emitted = emission(flow, part.at, part.weight);
+        let emitted = emission(flow, part);
         let Some(value) = flow.graph.known(emitted) else {
             flow.warn("the lamp's nodes vary over it, which is not supported; they count as 1");
             return LampShader::default();
@@ -29,10 +29,12 @@ pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
     LampShader { factor, decay: flow.falloff.unwrap_or_default() }
 }
 
-/// Color × strength × weight of an Emission or Background node.
-pub fn emission<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, weight: ValueId) -> ValueId {
-    let (color, strength) = (flow.input(at, "Color"), flow.input(at, "Strength"));
-    let emitted = flow.graph.multiply(color, strength);
+/// Color × strength × weight of a part that emits.
+pub fn emission<'a>(flow: &mut Flow<'a, '_>, Part { weight, at, emitted }: Part<'a>) -> ValueId {
+    let emitted = emitted.unwrap_or_else(|| {
+        let (color, strength) = (flow.input(at, "Color"), flow.input(at, "Strength"));
+        flow.graph.multiply(color, strength)
+    });
     flow.graph.multiply(emitted, weight)
 }
 

@@ -1,7 +1,7 @@
 //! The table of nodes that make values: `bl_idname` and what its outputs are.
 
 use super::flow::{At, Flow};
-use super::{color, input, lamp, math, procedural, sky, texture, vector};
+use super::{color, displacement, input, lamp, math, procedural, sky, texture, vector};
 use crate::desc::graph::ValueId;
 
 /// What the output of this identifier of a node is.
@@ -61,6 +61,8 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeNormal", vector::normal),
     ("ShaderNodeNormalMap", vector::normal_map),
     ("ShaderNodeBump", vector::bump),
+    ("ShaderNodeDisplacement", displacement::displacement),
+    ("ShaderNodeVectorDisplacement", displacement::vector),
     ("ShaderNodeVectorRotate", vector::rotate),
     ("ShaderNodeVectorTransform", vector::transform),
     ("ShaderNodeVectorCurve", vector::curves),
