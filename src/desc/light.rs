@@ -274,6 +274,8 @@ pub struct LightLinks {
     pub blockers: Option<LinkSet>,
     /// Factors of what it lights by diffuse scattering, and by all other.
     pub response: [f64; 2],
+    /// True for one that takes light away instead of giving it: Blender's lamps of negative power.
+    pub takes: bool,
 }
 
 impl Default for LightLinks {
@@ -285,6 +287,7 @@ impl Default for LightLinks {
             receivers: None,
             blockers: None,
             response: [1.0; 2],
+            takes: false,
         }
     }
 }

@@ -40,9 +40,9 @@ pub struct MaterialDesc {
     pub graph: Graph,
     /// Diffuse albedo of dielectrics, normal-incidence reflectance of metals.
     pub base_color: ColorInput,
-    /// True where a dielectric may return more light than it gets: base colors above 1 count as they are for its diffuse
-    /// part (Cycles). Else they are cut there, too.
-    pub gains: bool,
+    /// True where what is not physical counts as it is (Cycles): base colors above 1, for the diffuse part of a
+    /// dielectric, and emission below 0. Else both are cut.
+    pub unbounded: bool,
     /// Alpha; `alpha_mode` says how it is read. Times the vertex colour's alpha.
     pub alpha: ScalarInput,
     /// How alpha is read.
@@ -131,7 +131,7 @@ impl Default for MaterialDesc {
             metal_edge: ColorInput::constant([1.0; 3]),
             diffuse_roughness: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(0.5),
-            gains: false,
+            unbounded: false,
             multiscatter: true,
             ior: ScalarInput::constant(1.5),
             specular: ScalarInput::constant(1.0),

@@ -21,7 +21,12 @@ pub(super) struct Taps {
 impl Taps {
     /// Those about the coordinate `u` of a level `n` texels long.
     pub(super) fn at(u: f32, n: u32, wrap: Wrap, filter: Filter) -> Self {
-        let s = fold(u, wrap) * n as f32 - 0.5;
+        let u = match wrap {
+            // Far enough beyond the edge for all taps to be there.
+            Wrap::Clamp | Wrap::Black => u.clamp(-4.0, 5.0),
+            _ => fold(u, wrap),
+        };
+        let s = u * n as f32 - 0.5;
         let (first, weights, count) = kernel(s, filter);
         let n = n as i32;
         let texel = |k: usize| first + k as i32;

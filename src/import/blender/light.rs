@@ -34,6 +34,8 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
     let place = place.at(&data.name);
     let scale = data.energy * data.exposure.exp2();
     let power: [f64; 3] = std::array::from_fn(|i| scale * data.color[i] * data.temperature_color[i] * shader.factor[i]);
+    let takes = power.iter().all(|&c| c <= 0.0) && power != [0.0; 3];
+    let power = if takes { power.map(f64::abs) } else { power };
     let times = |factor: f64| power.map(|c| c * factor);
     let mut transform = affine(&data.matrix);
     let kind = match data.r#type.as_str() {
@@ -78,7 +80,7 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
         shaping: ShapingDesc { cone, ..ShapingDesc::default() },
         decay: shader.decay,
         visibility: data.visibility.into(),
-        links: LightLinks { cast_shadow: data.use_shadow, ..LightLinks::default() },
+        links: LightLinks { cast_shadow: data.use_shadow, takes, ..LightLinks::default() },
     })
 }
 

@@ -48,6 +48,7 @@ fn material(
         place: place.at(&data.name),
         material_index: data.pass_index,
         bump_correction: data.bump_correction,
+        unbounded: true,
         ..MaterialDesc::default()
     };
     match &data.nodes {

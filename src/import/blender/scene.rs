@@ -317,7 +317,8 @@ impl BlenderScene {
             };
             let Some(mut light) = light::light(data, &shader, &desc.place, warnings) else { continue };
             let own = light::links(&data.lightgroup, data.receivers.as_ref(), data.blockers.as_ref(), of_object);
-            light.links = LightLinks { cast_shadow: light.links.cast_shadow, ..own };
+            let LightLinks { cast_shadow, takes, .. } = light.links;
+            light.links = LightLinks { cast_shadow, takes, ..own };
             desc.lights.push(light);
         }
         if let Some(world) = &document.world {

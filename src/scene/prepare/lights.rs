@@ -13,9 +13,10 @@ use crate::error::Warnings;
 use crate::light::{AnyEmitter, Light, Rules, Seen, ShadowLook};
 
 /// Factors of a light's light; what is no factor counts as 0.
-fn response(factors: [f64; 2]) -> Option<[f32; 2]> {
-    let usable = |x: f64| if x.is_finite() && x > 0.0 { x as f32 } else { 0.0 };
-    (factors != [1.0; 2]).then(|| factors.map(usable))
+fn response(of: &LightLinks) -> Option<[f32; 2]> {
+    let sign = if of.takes { -1.0 } else { 1.0 };
+    let usable = |x: f64| if x.is_finite() && x > 0.0 { sign * x as f32 } else { 0.0 };
+    (of.takes || of.response != [1.0; 2]).then(|| of.response.map(usable))
 }
 
 /// Every light of the scene, `extra` included; instances learn which light they are. `groups` are
@@ -41,7 +42,7 @@ pub fn prepare(
         shadow: links.shadow(of),
         look,
         receivers: links.receivers(of),
-        response: response(of.response),
+        response: response(of),
     };
     let portals = portals::prepare(desc, shared.origin, warnings);
     let mut lights = Vec::new();

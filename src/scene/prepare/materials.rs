@@ -282,6 +282,7 @@ impl Builder<'_> {
             interior: volume.map(|volume| Interior { sigma: absorption(&volume), adds: volume.adds }),
             emission,
             unlit: desc.unlit,
+            unbounded: desc.unbounded,
             tinted: desc.tinted,
             holdout: desc.holdout,
             normal: normal_map,
@@ -302,6 +303,9 @@ pub fn emission_is_lost(desc: &MaterialDesc) -> bool {
 /// Emitted radiance, or the factor of its texture.
 fn emission(desc: &MaterialDesc, mended: &mut Mended) -> Rgb {
     let strength = desc.emission_strength;
+    if desc.unbounded {
+        return mended.signed_color("emission", desc.emission.factor.map(|c| c * strength));
+    }
     // Two negative factors make no light.
     let product = |c: f64| if strength < 0.0 { -(c * strength).abs() } else { c * strength };
     mended.color("emission", desc.emission.factor.map(product))

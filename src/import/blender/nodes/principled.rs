@@ -28,7 +28,7 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
     let transmission = number(flow, at, "Transmission Weight");
     let layers = MaterialDesc {
         base_color: input(flow, at, "Base Color"),
-        gains: true,
+        unbounded: true,
         metallic: number(flow, at, "Metallic"),
         metal_edge: input(flow, at, "Specular Tint"),
         diffuse_roughness: optional(flow, at, "Diffuse Roughness", 0.0),
