@@ -135,6 +135,20 @@ pub struct DomeShader {
     pub suns: Vec<DomeSun>,
 }
 
+/// A factor of what a lamp emits, by its graph.
+///
+/// Its graph sees the lamp as a surface from where its light goes: normals and the direction to whoever looks are the
+/// direction in which light leaves, of areas normals are their axis. Object space is the lamp's. Parametric coordinates
+/// are 0 to 1: over an area along its x and y, over the square around the cone of a spot, over the sphere around a point
+/// (longitude and latitude), over the disk of a sun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LampShaderDesc {
+    /// How it is made.
+    pub graph: Graph,
+    /// The factor; negative places count as 0.
+    pub factor: ValueId,
+}
+
 /// The disk of a sun in a sky of a graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeSun {
@@ -156,6 +170,8 @@ pub struct ShapingDesc {
     pub focus_tint: [f64; 3],
     /// A measured distribution.
     pub ies: Option<IesRef>,
+    /// Index into `SceneDesc::lamp_shaders`.
+    pub shader: Option<u32>,
 }
 
 /// How the emission of an object varies with direction, as that of a light that stands somewhere.

@@ -144,6 +144,8 @@ pub struct Material {
     pub unlit: bool,
     /// True where emission may be below 0.
     pub unbounded: bool,
+    /// The normal of the whole is that of the surface itself.
+    pub relief: bool,
     /// Colours of shapes and instances multiply the base colour and alpha.
     pub tinted: bool,
     /// The camera sees a hole in the picture instead.

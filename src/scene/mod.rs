@@ -10,6 +10,7 @@ mod ids;
 mod inside;
 mod instance;
 mod interaction;
+mod lamp_shading;
 mod material;
 mod media;
 mod path_state;

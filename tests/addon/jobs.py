@@ -101,9 +101,7 @@ def mesh_time(count):
 
 def side_by_side(name, folder, spp=256, size=64):
     """The scene `name` by both engines: paths of the two EXR files."""
-    import scenes
-
-    getattr(scenes, name)()
+    _scene_of(name)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = int(size) * 4 // 3, int(size)
     scene.render.resolution_percentage = 100
@@ -139,9 +137,10 @@ def _left():
 
 def _scene_of(name):
     import export_scenes
+    import material_scenes
     import scenes
 
-    getattr(export_scenes if hasattr(export_scenes, name) else scenes, name)()
+    next(getattr(module, name) for module in (export_scenes, material_scenes, scenes) if hasattr(module, name))()
 
 
 class _Listener:

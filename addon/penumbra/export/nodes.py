@@ -98,6 +98,8 @@ def _properties(node, context):
             data[name] = _curves(value)
         elif kind == "Text":
             data[name] = value.as_string()
+        elif name == "filepath":
+            data[name] = bpy.path.abspath(value, library=node.id_data.library)
         elif kind == "Object":
             data[name] = context.object_matrix(value)
         else:

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::document::{LightData, LinkData, ObjectData};
 use super::transform::affine;
-use crate::desc::{ConeDesc, DecayDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc};
+use crate::desc::{ConeDesc, DecayDesc, LampShaderDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc};
 use crate::error::{Place, Warnings};
 use crate::math::DVec3;
 
@@ -19,13 +19,15 @@ use crate::math::DVec3;
 pub struct LampShader {
     /// Colour times strength.
     pub factor: [f64; 3],
+    /// What that is to be multiplied by, where it varies over the lamp.
+    pub varying: Option<LampShaderDesc>,
     /// Of a Light Falloff node.
     pub decay: DecayDesc,
 }
 
 impl Default for LampShader {
     fn default() -> Self {
-        Self { factor: [1.0; 3], decay: DecayDesc::default() }
+        Self { factor: [1.0; 3], varying: None, decay: DecayDesc::default() }
     }
 }
 

@@ -317,6 +317,10 @@ impl BlenderScene {
             };
             let Some(mut light) = light::light(data, &shader, &desc.place, warnings) else { continue };
             let own = light::links(&data.lightgroup, data.receivers.as_ref(), data.blockers.as_ref(), of_object);
+            if let Some(varying) = shader.varying {
+                light.shaping.shader = Some(desc.lamp_shaders.len() as u32);
+                desc.lamp_shaders.push(varying);
+            }
             let LightLinks { cast_shadow, takes, .. } = light.links;
             light.links = LightLinks { cast_shadow, takes, ..own };
             desc.lights.push(light);

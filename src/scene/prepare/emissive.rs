@@ -51,6 +51,8 @@ pub struct Shared<'a> {
     pub materials: &'a [Material],
     /// What domes emit that have a graph.
     pub domes: &'a [Program],
+    /// What lamps emit that have a graph.
+    pub lamps: &'a [Program],
     /// Textures of all of them.
     pub textures: &'a Arc<Vec<Texture>>,
     /// What graphs ask of meshes and objects.

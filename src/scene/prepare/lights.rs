@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::cache::Cache;
 use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
+use super::lamp_shader::LampShader;
 use super::links::Links;
 use super::mend::Mended;
 use super::{dome, lamp, portals, shadow_look, shaping, suns};
@@ -49,7 +50,10 @@ pub fn prepare(
     for light in desc.lights.iter().chain(extra).filter(|light| !light.kind.is_portal()) {
         let mut emitter = match light.kind {
             LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared, cache).map(Into::into),
-            _ => lamp::prepare(desc, light, shared.origin, warnings),
+            _ => {
+                let shader = LampShader::of(desc, light, shared);
+                lamp::prepare(desc, light, shared.origin, shader.as_ref(), warnings)
+            }
         };
         if let (Some(AnyEmitter::Dome(dome)), Some(portals)) = (&mut emitter, &portals) {
             dome.guide(portals.clone());

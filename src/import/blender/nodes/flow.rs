@@ -102,6 +102,11 @@ impl<'a, 'i> Flow<'a, 'i> {
         self.warnings.push(&self.place, what);
     }
 
+    /// Where something of a node is told, and who takes it down.
+    pub fn told_at(&mut self, node: &str) -> (Place, &mut Warnings) {
+        (self.place.at(node), self.warnings)
+    }
+
     /// The output node of the outermost tree: the active one, that of Cycles before that of others.
     pub fn output_node(&self, kind: &str) -> Option<At<'a>> {
         let tree = self.scopes[0].tree;

@@ -1,18 +1,17 @@
-//! Lamps: emission that is the same in all directions, and how it falls off.
+//! Lamps: what they emit, and how it falls off.
 
 use super::super::light::LampShader;
 use super::closure::{self, Part};
 use super::flow::{At, Flow};
-use crate::desc::DecayLaw;
+use crate::desc::{DecayLaw, LampShaderDesc};
 use crate::desc::graph::ValueId;
 
-/// What the nodes of a lamp emit. What depends on more than numbers is told; the lamp's own color then
-/// stands for it.
+/// What the nodes of a lamp emit.
 pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
     let black = LampShader { factor: [0.0; 3], ..LampShader::default() };
     let Some(output) = flow.output_node("ShaderNodeOutputLight") else { return black };
     let Some(surface) = output.node.input("Surface") else { return black };
-    let mut factor = [0.0; 3];
+    let mut sum = flow.graph.number(0.0);
     for part in closure::parts(flow, output, surface) {
         if !part.emits() {
             let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
@@ -20,13 +19,14 @@ pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
             continue;
         }
         let emitted = emission(flow, part);
-        let Some(value) = flow.graph.known(emitted) else {
-            flow.warn("the lamp's nodes vary over it, which is not supported; they count as 1");
-            return LampShader::default();
-        };
-        (0..3).for_each(|i| factor[i] += value[i]);
+        sum = flow.graph.add(sum, emitted);
     }
-    LampShader { factor, decay: flow.falloff.unwrap_or_default() }
+    let decay = flow.falloff.unwrap_or_default();
+    if let Some([r, g, b, _]) = flow.graph.known(sum) {
+        return LampShader { factor: [r, g, b], varying: None, decay };
+    }
+    let varying = Some(LampShaderDesc { graph: std::mem::take(&mut flow.graph), factor: sum });
+    LampShader { factor: [1.0; 3], varying, decay }
 }
 
 /// Color × strength × weight of a part that emits.

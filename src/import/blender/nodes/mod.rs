@@ -9,6 +9,7 @@ mod closure;
 mod color;
 mod displacement;
 mod flow;
+mod ies;
 mod input;
 mod lamp;
 mod math;

@@ -42,7 +42,9 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc, displacement: &str) 
     let bare = inside.is_some() && output.is_some_and(|output| !flow.is_linked(output, "Surface"));
     let mut material = match parts[..] {
         [Part { weight, at, emitted: None }]
-            if at.node.r#type == "ShaderNodeBsdfPrincipled" && flow.graph.known(weight) == Some([1.0; 4]) =>
+            if at.node.r#type == "ShaderNodeBsdfPrincipled"
+                && flow.graph.known(weight) == Some([1.0; 4])
+                && !(relief.is_some() && flow.is_linked(at, "Normal")) =>
         {
             principled::alone(flow, at, base)
         }
@@ -55,9 +57,7 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc, displacement: &str) 
         }
     };
     material.volume = inside.or(material.volume);
-    // What the displacement bends is the smooth surface itself.
-    let bent_by_relief = relief.is_some() && material.normal == relief.map(NormalInput::Graph);
-    material.bump_correction &= !bent_by_relief;
+    material.relief = relief.is_some();
     if bare {
         material.transparency = ColorInput::constant([1.0; 3]);
     }
@@ -75,11 +75,12 @@ fn mixed(flow: &mut Flow<'_, '_>, sum: Sum, base: MaterialDesc) -> MaterialDesc 
     };
     let (transparent, emitted) = (total(transparent), total(emitted));
     let black = ScalarInput::constant(0.0);
-    // Normals that are the same everywhere are the material's.
-    let normal = parts.first().and_then(|part| part.normal);
-    let shared = parts.iter().all(|part| part.normal == normal);
-    let parts = parts.into_iter().map(|part| PartDesc { normal: part.normal.filter(|_| !shared), ..part });
-    let parts: Vec<_> = parts.collect();
+    // Normals that are the same everywhere are the material's, and that of a relief is.
+    let relief = flow.relief().map(NormalInput::Graph);
+    let normal = relief.or(parts.first().and_then(|part| part.normal));
+    let shared = relief.is_some() || parts.iter().all(|part| part.normal == normal);
+    let own = |part: &PartDesc| part.normal.filter(|own| !(shared && Some(*own) == normal));
+    let parts: Vec<_> = parts.into_iter().map(|part| PartDesc { normal: own(&part), ..part }).collect();
     let transmits = parts.iter().any(|part| part.closure.transmits());
     MaterialDesc {
         // Without parts nothing scatters.
