@@ -290,6 +290,8 @@ pub struct LightLinks {
     pub blockers: Option<LinkSet>,
     /// Factors of what it lights by diffuse scattering, and by all other.
     pub response: [f64; 2],
+    /// How often light was scattered before, at most, where it lights (Cycles); `None` for no limit.
+    pub max_bounces: Option<u32>,
     /// True for one that takes light away instead of giving it: Blender's lamps of negative power.
     pub takes: bool,
 }
@@ -303,6 +305,7 @@ impl Default for LightLinks {
             receivers: None,
             blockers: None,
             response: [1.0; 2],
+            max_bounces: None,
             takes: false,
         }
     }

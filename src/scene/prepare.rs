@@ -149,6 +149,10 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         background_visible,
         follows_camera: follows_camera(&desc),
         film_transparent,
+        transparent_glass: desc.render.transparent_glass.filter(|_| film_transparent).map(|roughness| {
+            let roughness = if roughness > 0.0 { roughness.min(1.0) as f32 } else { 0.0 };
+            roughness * roughness
+        }),
         max_transparent: settings.transparent_bounces,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),

@@ -104,7 +104,7 @@ def _material(image, repetitions, properties, output):
     if output == "over":
         mix = tree.nodes.new("ShaderNodeMixShader")
         tree.links.new(alpha, mix.inputs[0])
-        tree.links.new(tree.nodes.new("ShaderNodeHoldout").outputs[0], mix.inputs[1])
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
         tree.links.new(shown, mix.inputs[2])
         shown = mix.outputs[0]
     tree.links.new(shown, tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])

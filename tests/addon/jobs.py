@@ -320,10 +320,11 @@ def left_out(folder):
     tree = material.node_tree
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
-    of_object = tree.nodes.new("ShaderNodeAttribute")
-    of_object.attribute_type, of_object.attribute_name = "OBJECT", "mine"
+    material.displacement_method = "BOTH"
+    pointed = tree.nodes.new("ShaderNodeNewGeometry")
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    tree.links.new(of_object.outputs["Color"], shader.inputs["Base Color"])
+    tree.links.new(pointed.outputs["Pointiness"], shader.inputs["Base Color"])
+    bpy.context.scene.cycles.use_fast_gi = True
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(material)
     _render(os.path.join(folder, "left_out.exr"))

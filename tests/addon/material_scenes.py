@@ -236,3 +236,48 @@ def lamp_of_ies():
     node = _node(tree, "ShaderNodeTexIES", {"Strength": 1.5}, mode="INTERNAL", ies=text)
     emission = next(node for node in tree.nodes if node.type == "EMISSION")
     tree.links.new(node.outputs[0], emission.inputs["Strength"])
+
+
+def few_bounces_of_lamps():
+    """Small lamps that light what the camera sees, and what is lit from there once, and no more."""
+    scenes.room()
+    for bounces, x in ((0, -1.4), (1, 1.4)):
+        obj = scenes.lamp("POINT", (x, -1.0, 1.6), energy=30.0, shadow_soft_size=0.01)
+        obj.data.cycles.max_bounces = bounces
+    bpy.data.objects["Plane"].data.materials[0] = scenes.material("White", "ShaderNodeBsdfDiffuse", Color=(0.9, 0.9, 0.9, 1.0))
+
+
+def islands():
+    """A colour for each part of a mesh."""
+    scenes.room()
+    material, tree = _tree("Islands")
+    number = _node(tree, "ShaderNodeNewGeometry").outputs["Random Per Island"]
+    _output(tree, Surface=_node(tree, "ShaderNodeEmission", {"Color": number}).outputs[0])
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(1.5, 0.5, 0.5))
+    parts = [bpy.context.object]
+    for x in (-2.5, -1.5, 2.5):
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.4, location=(x, 0.0, 0.5))
+        parts.append(bpy.context.object)
+    for part in parts:
+        part.select_set(True)
+    bpy.ops.object.join()
+    bpy.context.object.data.materials.clear()
+    bpy.context.object.data.materials.append(material)
+
+
+def film_through_glass():
+    """Clear, rough and too rough glass before a transparent film."""
+    scenes.room()
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    bpy.data.objects["Plane"].location.z = -1.0
+    bpy.data.objects["Plane"].scale = (0.25, 0.25, 1.0)
+    scenes.lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=2.0)
+    scenes.world(0.3)
+    for number, roughness in enumerate((0.0, 0.15, 0.4)):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.6, location=(1.5 * number - 1.5, 0.0, 0.4))
+        bpy.ops.object.shade_smooth()
+        glass = scenes.material(f"Glass {number}", "ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.8, 1.0), Roughness=roughness)
+        bpy.context.object.data.materials.append(glass)
+    scene = bpy.context.scene
+    scene.render.film_transparent = True
+    scene.cycles.film_transparent_glass, scene.cycles.film_transparent_roughness = True, 0.2

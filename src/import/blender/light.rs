@@ -82,7 +82,12 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
         shaping: ShapingDesc { cone, ..ShapingDesc::default() },
         decay: shader.decay,
         visibility: data.visibility.into(),
-        links: LightLinks { cast_shadow: data.use_shadow, takes, ..LightLinks::default() },
+        links: LightLinks {
+            cast_shadow: data.use_shadow,
+            max_bounces: data.max_bounces,
+            takes,
+            ..LightLinks::default()
+        },
     })
 }
 

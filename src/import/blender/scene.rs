@@ -283,7 +283,7 @@ impl BlenderScene {
                 info: ObjectInfo {
                     color: data.color,
                     random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },
-                    attributes: Vec::new(),
+                    attributes: data.attributes.iter().map(|(name, value)| (name.as_str().into(), *value)).collect(),
                 },
             });
         }
@@ -321,8 +321,8 @@ impl BlenderScene {
                 light.shaping.shader = Some(desc.lamp_shaders.len() as u32);
                 desc.lamp_shaders.push(varying);
             }
-            let LightLinks { cast_shadow, takes, .. } = light.links;
-            light.links = LightLinks { cast_shadow, takes, ..own };
+            let LightLinks { cast_shadow, max_bounces, takes, .. } = light.links;
+            light.links = LightLinks { cast_shadow, max_bounces, takes, ..own };
             desc.lights.push(light);
         }
         if let Some(world) = &document.world {

@@ -44,6 +44,7 @@ pub fn prepare(
         look,
         receivers: links.receivers(of),
         response: response(of),
+        max_bounces: of.max_bounces.unwrap_or(u32::MAX),
     };
     let portals = portals::prepare(desc, shared.origin, warnings);
     let mut lights = Vec::new();

@@ -1,6 +1,6 @@
 //! Blender's IES Texture: a measured distribution looked up by a direction, as Cycles' kernel interpolates it.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::Value;
 
@@ -27,23 +27,15 @@ impl IesTable {
         let (Some(h), Some(v)) = (Step::of(&self.horizontal, horizontal), Step::of(&self.vertical, vertical)) else {
             return 0.0;
         };
-        let whole = self.horizontal[0] < 1e-7 && self.horizontal[self.horizontal.len() - 1] > TAU - 1e-7;
-        let rows = self.horizontal.len();
         let (b, c) = (self.row(h.index, v), self.row(h.index + 1, v));
-        let a = match h.index {
-            0 if whole => self.row(rows - 2, v),
-            0 => b,
-            i => self.row(i - 1, v),
-        };
-        let d = match h.index + 2 {
-            i if i < rows => self.row(i, v),
-            _ if whole => self.row(1, v),
-            _ => b,
-        };
+        // Cycles means to go on around the circle here, and at the upper pole; its test for a whole circle never holds in
+        // single precision.
+        let a = if h.index == 0 { b } else { self.row(h.index - 1, v) };
+        let d = if h.index + 2 < self.horizontal.len() { self.row(h.index + 2, v) } else { b };
         cubic([a, b, c, d], h.share).max(0.0)
     }
 
-    /// The value of a row. At the poles it goes on as if the row were even about them.
+    /// The value of a row. Below 0 it goes on as if the row were even about it.
     fn row(&self, row: usize, Step { index, share }: Step) -> f64 {
         let count = self.vertical.len();
         let at = |i: usize| self.values[row * count + i];
@@ -53,11 +45,7 @@ impl IesTable {
             0 => b,
             i => at(i - 1),
         };
-        let d = match index + 2 {
-            i if i < count => at(i),
-            _ if self.vertical[count - 1] > PI - 1e-7 => at(count - 2),
-            _ => c,
-        };
+        let d = if index + 2 < count { at(index + 2) } else { c };
         cubic([a, b, c, d], share)
     }
 }
