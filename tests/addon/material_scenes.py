@@ -51,12 +51,12 @@ def _relief(kind, method="BUMP", **displacement):
         material, tree = _tree(f"Relief {number}")
         waves = _waves(tree)
         if kind == "ShaderNodeDisplacement":
-            inputs = {"Height": waves.outputs["Fac"], "Midlevel": 0.3, "Scale": 0.02}
+            inputs = {"Height": waves.outputs["Fac"], "Midlevel": 0.3, "Scale": 0.01}
         else:
-            inputs = {"Vector": waves.outputs["Color"], "Midlevel": 0.2, "Scale": 0.02}
+            inputs = {"Vector": waves.outputs["Color"], "Midlevel": 0.2, "Scale": 0.01}
         node = _node(tree, kind, inputs, **displacement)
         if number == 1:
-            bump = _node(tree, "ShaderNodeBump", {"Height": _waves(tree, 5.0).outputs["Fac"], "Distance": 0.05})
+            bump = _node(tree, "ShaderNodeBump", {"Height": _waves(tree, 5.0).outputs["Fac"], "Distance": 0.006})
             rough = _node(tree, "ShaderNodeBsdfDiffuse", {"Color": (0.7, 0.3, 0.2, 1.0), "Normal": bump.outputs[0]})
             shiny = _node(tree, "ShaderNodeBsdfGlossy", {"Roughness": 0.4})
             facing = _node(tree, "ShaderNodeLayerWeight", {"Blend": 0.3}).outputs["Facing"]
@@ -97,7 +97,7 @@ def relief_of_color():
         tree = material.node_tree
         for node in [node for node in tree.nodes if node.bl_idname == "ShaderNodeDisplacement"]:
             color = node.inputs["Height"].links[0].from_node.outputs["Color"]
-            scaled = _node(tree, "ShaderNodeVectorMath", {0: color, "Scale": 0.02}, operation="SCALE")
+            scaled = _node(tree, "ShaderNodeVectorMath", {0: color, "Scale": 0.01}, operation="SCALE")
             output = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputMaterial")
             tree.links.new(scaled.outputs[0], output.inputs["Displacement"])
 
