@@ -450,7 +450,9 @@ fn neither_scale_nor_place_matters() {
 
 #[test]
 fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
-    use penumbra::desc::{Attribute, Channel, Blending, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc};
+    use penumbra::desc::{
+        Attribute, Blending, Channel, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc,
+    };
     use penumbra::desc::{TextureRef, TextureTransform, Wrap};
     // A board of holes: its mean alpha is a half, and a threshold of the mean would close or open all.
     let indirect = |cutoff: f64, channel: Channel| {

@@ -9,10 +9,10 @@ mod scene;
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{Blending, 
-    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, ConeDesc, Filter, IesDesc, IesRef, ImageDesc, InstanceDesc,
-    LightKind, MaterialDesc, MeshDesc, PixelData, RoundsDesc, ScalarInput, ShapedDesc, ShapingDesc, TextureDesc,
-    TextureRef, TextureTransform, Wrap,
+use penumbra::desc::{
+    AlphaMode, Attribute, Blending, Channel, ColorInput, ColorSpace, ConeDesc, Filter, IesDesc, IesRef, ImageDesc,
+    InstanceDesc, LightKind, MaterialDesc, MeshDesc, PixelData, RoundsDesc, ScalarInput, ShapedDesc, ShapingDesc,
+    TextureDesc, TextureRef, TextureTransform, Wrap,
 };
 use penumbra::math::{DAffine3, DVec3, Vec3};
 use penumbra::settings::Settings;

@@ -10,9 +10,10 @@ mod scene;
 use std::f64::consts::PI;
 
 use penumbra::desc::graph::{Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Space, ValueId};
-use penumbra::desc::{Blending, 
-    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc,
-    NamedAttribute, NormalInput, ObjectInfo, PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
+use penumbra::desc::{
+    AlphaMode, Attribute, Blending, Channel, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc,
+    MeshDesc, NamedAttribute, NormalInput, ObjectInfo, PixelData, ScalarInput, TextureDesc, TextureRef,
+    TextureTransform, Wrap,
 };
 use penumbra::film::Picture;
 use penumbra::math::{DAffine3, DMat3, DQuat, DVec3, Vec3};

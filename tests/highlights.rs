@@ -7,9 +7,9 @@ mod scene;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use penumbra::desc::{Blending, 
-    Attribute, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc, NormalInput, PixelData,
-    ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
+use penumbra::desc::{
+    Attribute, Blending, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc, NormalInput,
+    PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DVec3};

@@ -355,7 +355,8 @@ fn encoded_values_are_blended_as_they_are_stored() {
     }
     // Between texels the mean is that of the curve; half a texel at both ends is what it is.
     let steps = 10_000;
-    let mean: f64 = (0..steps).map(|i| decoded((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps);
+    let mean: f64 =
+        (0..steps).map(|i| decoded((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps);
     let expected = (63.0 * mean + 0.5) / 64.0;
     let found = f64::from(texture.lookup([0.5, 0.5], 1.0)[0]);
     assert!((found - expected).abs() < 0.003, "{found} is not {expected}");
@@ -373,7 +374,10 @@ fn colors_times_alpha_are_divided_by_what_comes_out() {
         let [r, g, b, a] = texture.lookup([u, 0.5], footprint);
         assert!((a - alpha).abs() < 0.003, "{u}: {a} is not {alpha}");
         for (found, expected) in [r, g, b].into_iter().zip(expected) {
-            assert!((found - expected).abs() < 0.006 * expected.max(0.1), "{u}, {footprint}: {found} is not {expected}");
+            assert!(
+                (found - expected).abs() < 0.006 * expected.max(0.1),
+                "{u}, {footprint}: {found} is not {expected}"
+            );
         }
     }
 }

@@ -32,8 +32,8 @@ pub use image::{Blending, ColorSpace, ImageDesc, PixelData};
 pub use input::{Channel, ColorInput, NormalInput, ScalarInput};
 pub use layers::{AnisotropyDesc, AnisotropyLaw, CoatDesc, IridescenceDesc, SheenDesc, TranslucentDesc, VolumeDesc};
 pub use light::{
-    ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LampShaderDesc, LightDesc, LightKind, LightLinks, LinkSet,
-    ShapedDesc, ShapingDesc,
+    ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LampShaderDesc, LightDesc, LightKind,
+    LightLinks, LinkSet, ShapedDesc, ShapingDesc,
 };
 pub use material::{AlphaMode, MaterialDesc};
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};

@@ -265,6 +265,20 @@ def islands():
     bpy.context.object.data.materials.append(material)
 
 
+def tangents():
+    """Radial tangents around each axis, shown as colours."""
+    scenes.room()
+    for number, axis in enumerate("XYZ"):
+        material, tree = _tree(axis)
+        tangent = _node(tree, "ShaderNodeTangent", direction_type="RADIAL", axis=axis).outputs[0]
+        shown = _node(tree, "ShaderNodeVectorMath", {0: tangent, 1: (0.5,) * 3, 2: (0.5,) * 3}, operation="MULTIPLY_ADD")
+        _output(tree, Surface=_node(tree, "ShaderNodeEmission", {"Color": shown.outputs[0]}).outputs[0])
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.6, location=(1.6 * number - 1.6, -0.8, 1.0),
+                                             rotation=(0.4, 0.3, 0.2))
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(material)
+
+
 def film_through_glass():
     """Clear, rough and too rough glass before a transparent film."""
     scenes.room()

@@ -208,8 +208,8 @@ def _inputs():
                 "ShaderNodeVectorMath", {0: t.vector, 1: (0.2, 0.2, 1.0)}, operation="ADD").outputs[0]}).outputs[n]
     yield "Fresnel", lambda t: t.node("ShaderNodeFresnel", {"IOR": 1.6, "Normal": t.node(
         "ShaderNodeVectorMath", {0: t.vector, 1: (0.2, 0.2, 1.0)}, operation="ADD").outputs[0]}).outputs[0]
-    for axis in "XYZ":
-        yield f"Tangent {axis}", lambda t, a=axis: t.node("ShaderNodeTangent", direction_type="RADIAL", axis=a).outputs[0]
+    # Around the other axes there is none on what is flat.
+    yield "Tangent", lambda t: t.node("ShaderNodeTangent", direction_type="RADIAL", axis="Z").outputs[0]
     for kind, name in (("OBJECT", "mine"), ("OBJECT", "color"), ("INSTANCER", "mine"), ("VIEW_LAYER", "mine"),
                        ("OBJECT", "not there")):
         for output in ("Color", "Vector", "Fac", "Alpha"):

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use penumbra::light::{
-    AnyEmitter, Cone, Decay, Drawn, Emitter, Falloff, Ies, MeshEmitters, MeshLight, Point, Profile, Receiver, RoundEmitters,
-    RoundLight, Shaping, Sphere,
+    AnyEmitter, Cone, Decay, Drawn, Emitter, Falloff, Ies, MeshEmitters, MeshLight, Point, Profile, Receiver,
+    RoundEmitters, RoundLight, Shaping, Sphere,
 };
 use penumbra::math::{Affine3A, DMat3, DVec3, Rgb, Vec3};
 use penumbra::shape::{Mesh, Rounds};

@@ -110,11 +110,7 @@ impl<'a> Images<'a> {
 
     /// All images and textures that were asked for, those of `kept` as they are there. One that can't be
     /// read is told, and is magenta as in Cycles.
-    pub fn finish(
-        mut self,
-        kept: &mut KeptImages,
-        warnings: &mut Warnings,
-    ) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
+    pub fn finish(mut self, kept: &mut KeptImages, warnings: &mut Warnings) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
         let decode = |wanted: &Wanted| {
             let version = self.version_of(&wanted.name, wanted.tile);
             if let Some(known) = version.as_ref().and_then(|version| kept.get(wanted, version)) {

@@ -47,8 +47,7 @@ impl LampShader {
                 _ => Parameters::Sphere,
             },
         };
-        let (program, textures, to_world) =
-            (lamps[shader as usize].clone(), textures.clone(), light.transform);
+        let (program, textures, to_world) = (lamps[shader as usize].clone(), textures.clone(), light.transform);
         let of = &desc.lamp_shaders[shader as usize];
         let area = matches!(parameters, Parameters::Area(_));
         let shading = Arc::new(LampShading { program, textures, camera, origin, to_world, parameters });
@@ -93,7 +92,8 @@ impl LampShader {
         let radius = (0.5 * angle).sin();
         let (mut sum, mut count, mut least, mut most) = (Rgb::BLACK, 0.0, Rgb::splat(f32::INFINITY), Rgb::BLACK);
         for i in 0..OF_SUN * OF_SUN {
-            let at = DVec2::new(f64::from(i % OF_SUN) + 0.5, f64::from(i / OF_SUN) + 0.5) * (2.0 / f64::from(OF_SUN)) - 1.0;
+            let at =
+                DVec2::new(f64::from(i % OF_SUN) + 0.5, f64::from(i / OF_SUN) + 0.5) * (2.0 / f64::from(OF_SUN)) - 1.0;
             if at.length() > 1.0 {
                 continue;
             }
@@ -116,7 +116,10 @@ impl LampShader {
 /// True where a factor goes by where it is on an area.
 fn goes_by_place(shader: &LampShaderDesc) -> bool {
     let by_place = |op: &Op| {
-        matches!(op, Op::Leaf(Leaf::Parametric | Leaf::Position | Leaf::ObjectPosition | Leaf::CameraPosition | Leaf::Window))
+        matches!(
+            op,
+            Op::Leaf(Leaf::Parametric | Leaf::Position | Leaf::ObjectPosition | Leaf::CameraPosition | Leaf::Window)
+        )
     };
     let needed = shader.graph.needed([shader.factor]);
     shader.graph.ops().iter().zip(needed).any(|(op, needed)| needed && by_place(op))

@@ -79,7 +79,7 @@ pub fn attribute<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> Value
     if of != "GEOMETRY" {
         // The add-on sends those that are asked for with the objects.
         let name = format!("{of} {name}");
-        let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0, 0.0, 0.0, 1.0] });
+        let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0; 4] });
         return match output {
             "Fac" => flow.graph.average(value),
             "Alpha" => flow.graph.place(value, 3),

@@ -3,8 +3,8 @@
 use super::super::light::LampShader;
 use super::closure::{self, Part};
 use super::flow::{At, Flow};
-use crate::desc::{DecayLaw, LampShaderDesc};
 use crate::desc::graph::ValueId;
+use crate::desc::{DecayLaw, LampShaderDesc};
 
 /// What the nodes of a lamp emit.
 pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
