@@ -119,8 +119,9 @@ def colors_as_shaders():
     cube.location.z = 0.8
     scenes.world(1.0)
     tree = bpy.context.scene.world.node_tree
-    color = _node(tree, "ShaderNodeRGB")
-    color.outputs[0].default_value = (0.1, 0.2, 0.4, 1.0)
+    # Not the same all over, of which Cycles 4.2 makes a tenth.
+    direction = _node(tree, "ShaderNodeTexCoord").outputs["Generated"]
+    color = _node(tree, "ShaderNodeVectorMath", {0: direction, 1: (0.1, 0.1, 0.2), 2: (0.1, 0.2, 0.4)}, operation="MULTIPLY_ADD")
     output = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputWorld")
     tree.links.new(color.outputs[0], output.inputs["Surface"])
 

@@ -13,6 +13,8 @@ pub struct IesTable {
     pub vertical: Vec<f64>,
     /// A row of `vertical.len()` values for each horizontal angle.
     pub values: Vec<f64>,
+    /// True where the spline goes to 0 beyond the first and last angle, as in Cycles up to 4.5.
+    pub fades: bool,
 }
 
 impl IesTable {
@@ -30,8 +32,9 @@ impl IesTable {
         let (b, c) = (self.row(h.index, v), self.row(h.index + 1, v));
         // Cycles means to go on around the circle here, and at the upper pole; its test for a whole circle never holds in
         // single precision.
-        let a = if h.index == 0 { b } else { self.row(h.index - 1, v) };
-        let d = if h.index + 2 < self.horizontal.len() { self.row(h.index + 2, v) } else { b };
+        let beyond = if self.fades { 0.0 } else { b };
+        let a = if h.index == 0 { beyond } else { self.row(h.index - 1, v) };
+        let d = if h.index + 2 < self.horizontal.len() { self.row(h.index + 2, v) } else { beyond };
         cubic([a, b, c, d], h.share).max(0.0)
     }
 
@@ -42,10 +45,15 @@ impl IesTable {
         let (b, c) = (at(index), at(index + 1));
         let a = match index {
             0 if self.vertical[0] < 1e-7 => at(1),
+            0 if self.fades => 0.0,
             0 => b,
             i => at(i - 1),
         };
-        let d = if index + 2 < count { at(index + 2) } else { c };
+        let d = match index + 2 {
+            i if i < count => at(i),
+            _ if self.fades => 0.0,
+            _ => c,
+        };
         cubic([a, b, c, d], share)
     }
 }
@@ -85,6 +93,7 @@ mod tests {
             horizontal: degrees(&[0.0, 90.0, 180.0, 270.0, 360.0]),
             vertical: degrees(&[0.0, 45.0, 90.0]),
             values: vec![8.0, 4.0, 1.0, 8.0, 5.0, 2.0, 8.0, 6.0, 3.0, 8.0, 5.0, 2.0, 8.0, 4.0, 1.0],
+            fades: false,
         };
         // Horizontal angle 0 is towards −y, 90 degrees towards −x.
         let at = |x: f64, y: f64, z: f64| table.at([x, y, z, 0.0]);
@@ -97,5 +106,9 @@ mod tests {
         let between = at(0.0, 0.4, -1.0);
         assert!(between > 6.0 && between < 8.0, "{between}");
         assert_eq!(table.at([0.0; 4]), 0.0);
+        // Values between the last two angles go by what is beyond them.
+        let fading = IesTable { fades: true, ..table.clone() };
+        let low = [0.0, 1.0, -0.2, 0.0];
+        assert!((fading.at([0.0, 2.0, -2.0, 0.0]) - 6.0).abs() < 1e-9 && fading.at(low) > table.at(low));
     }
 }

@@ -22,7 +22,8 @@ pub fn ies<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let value = match read(flow, at) {
         Ok(profile) => {
             let direction = flow.linked_or(at, "Vector", |flow| flow.object_normal());
-            flow.graph.apply(Function::Ies(Arc::new(table(&profile))), &[direction])
+            let fades = flow.version < [5, 0, 0];
+            flow.graph.apply(Function::Ies(Arc::new(table(&profile, fades))), &[direction])
         }
         Err(error) => {
             flow.warn(format!("{error}: it shines evenly instead"));
@@ -42,7 +43,7 @@ fn read<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Result<IesDesc> {
 }
 
 /// All around the axis, in watts.
-fn table(profile: &IesDesc) -> IesTable {
+fn table(profile: &IesDesc, fades: bool) -> IesTable {
     let rows = profile.horizontal.len();
     let last = profile.horizontal[rows - 1];
     // Each row of the file, by the angles that stand for it: mirrored where a part alone is given.
@@ -60,6 +61,7 @@ fn table(profile: &IesDesc) -> IesTable {
         horizontal: order.iter().map(|(angle, _)| angle.to_radians()).collect(),
         vertical: profile.vertical.iter().map(|angle| angle.to_radians()).collect(),
         values: order.iter().flat_map(row).map(|candela| candela * WATTS).collect(),
+        fades,
     }
 }
 
@@ -81,7 +83,7 @@ mod tests {
     #[test]
     fn a_part_of_the_circle_is_mirrored_to_the_whole() {
         let angles = |horizontal: &[f64]| {
-            let table = table(&profile(horizontal));
+            let table = table(&profile(horizontal), false);
             let degrees: Vec<f64> = table.horizontal.iter().map(|angle| angle.to_degrees().round()).collect();
             let first: Vec<f64> = table.values.iter().step_by(2).map(|value| (value / WATTS).round()).collect();
             (degrees, first)
