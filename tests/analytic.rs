@@ -458,7 +458,9 @@ fn neither_scale_nor_place_matters() {
 
 #[test]
 fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
-    use penumbra::desc::{Attribute, Channel, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc};
+    use penumbra::desc::{
+        Attribute, Blending, Channel, ColorSpace, Filter, ImageDesc, MeshDesc, PixelData, TextureDesc,
+    };
     use penumbra::desc::{TextureRef, TextureTransform, Wrap};
     // A board of holes: its mean alpha is a half, and a threshold of the mean would close or open all.
     let indirect = |cutoff: f64, channel: Channel| {
@@ -472,6 +474,7 @@ fn bounced_light_sees_the_holes_of_a_mask_and_not_their_mean() {
             height: 64,
             channels: if gray { 1 } else { 2 },
             color_space: ColorSpace::Linear,
+            blending: Blending::default(),
             pixels: PixelData::U8(match gray {
                 true => board,
                 false => board.iter().flat_map(|&alpha| [255, alpha]).collect(),

@@ -14,6 +14,7 @@ use penumbra::sampling::{Dimension, Pattern, Sampler};
 
 const WHITE: Surface = Surface {
     base_color: Rgb::WHITE,
+    gains: false,
     metallic: 0.0,
     metal_edge: Rgb::WHITE,
     diffuse_roughness: 0.0,

@@ -10,9 +10,9 @@ mod scene;
 use std::f64::consts::PI;
 
 use penumbra::desc::{
-    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, ConeDesc, Filter, IesDesc, IesRef, ImageDesc, InstanceDesc,
-    LightKind, MaterialDesc, MeshDesc, PixelData, RoundsDesc, ScalarInput, ShapedDesc, ShapingDesc, TextureDesc,
-    TextureRef, TextureTransform, Wrap,
+    AlphaMode, Attribute, Blending, Channel, ColorInput, ColorSpace, ConeDesc, Filter, IesDesc, IesRef, ImageDesc,
+    InstanceDesc, LightKind, MaterialDesc, MeshDesc, PixelData, RoundsDesc, ScalarInput, ShapedDesc, ShapingDesc,
+    TextureDesc, TextureRef, TextureTransform, Wrap,
 };
 use penumbra::math::{DAffine3, DVec3, Vec3};
 use penumbra::settings::Settings;
@@ -62,6 +62,7 @@ fn square(open: Open) -> Builder {
         height: 1,
         channels: 2,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::F32(alpha),
     };
     builder.desc.images.push(image.into());

@@ -11,8 +11,9 @@ use std::f64::consts::PI;
 
 use penumbra::desc::graph::{Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Space, ValueId};
 use penumbra::desc::{
-    AlphaMode, Attribute, Channel, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc,
-    NamedAttribute, NormalInput, ObjectInfo, PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
+    AlphaMode, Attribute, Blending, Channel, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc,
+    MeshDesc, NamedAttribute, NormalInput, ObjectInfo, PixelData, ScalarInput, TextureDesc, TextureRef,
+    TextureTransform, Wrap,
 };
 use penumbra::film::Picture;
 use penumbra::math::{DAffine3, DMat3, DQuat, DVec3, Vec3};
@@ -237,6 +238,7 @@ fn with_image(builder: &mut Builder) -> TextureRef {
         height: 8,
         channels: 4,
         color_space: ColorSpace::Srgb,
+        blending: Blending::default(),
         pixels: PixelData::U8(texels),
     };
     builder.desc.images.push(image.into());

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use penumbra::desc::{
-    Attribute, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc, NormalInput, PixelData,
-    ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
+    Attribute, Blending, ColorInput, ColorSpace, Filter, ImageDesc, LightKind, MaterialDesc, MeshDesc, NormalInput,
+    PixelData, ScalarInput, TextureDesc, TextureRef, TextureTransform, Wrap,
 };
 use penumbra::error::Place;
 use penumbra::math::{DAffine3, DVec3};
@@ -130,6 +130,7 @@ fn a_fine_normal_map_flickers_less_and_stays_as_bright() {
         height: n,
         channels: 3,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::U8((0..n * n).flat_map(texel).collect()),
     };
     sheet.desc.images.push(Arc::new(image));

@@ -171,6 +171,40 @@ fn factors_weigh_what_a_light_does_to_each_kind_of_scattering() {
     }
 }
 
+/// Blender's lamps of negative power.
+#[test]
+fn a_light_may_take_light_away() {
+    for (name, kind) in kinds() {
+        let [diffuse, glossy, combined, shadow, unshadowed] =
+            values(&lit(kind, 0.3, LightLinks::default(), Visibility::ALL));
+        let links = LightLinks { takes: true, ..LightLinks::default() };
+        let found = values(&lit(kind, 0.3, links, Visibility::ALL));
+        same(name, found, [-diffuse, -glossy, -combined, shadow, -unshadowed]);
+    }
+}
+
+/// Cycles' limit of bounces of a lamp: what was scattered more often is not lit, whichever strategy finds the light.
+#[test]
+fn a_light_lights_what_was_scattered_no_more_often_than_it_says() {
+    for (name, kind) in kinds() {
+        let lit_after = |bounces: u32, max_bounces: Option<u32>| {
+            let links = LightLinks { max_bounces, ..LightLinks::default() };
+            let mut builder = lit(kind, 0.3, links, Visibility::ALL);
+            // Something that is lit from the ground, and lights it.
+            let white = builder.lambert(0.9);
+            builder.quad([-8.0, 3.0, -8.0], [16.0, 0.0, 0.0], [0.0, 0.0, 16.0], white);
+            builder.desc.instances.last_mut().unwrap().visibility.shadow = false;
+            let settings = Settings { max_bounces: bounces, ..settings("combined", 1024) };
+            mean(&picture(&builder.desc, 6, &settings), "Combined", 0)
+        };
+        let near = |a: f64, b: f64| assert!((a - b).abs() <= 0.03 * b.abs(), "{name}: {a} and {b}");
+        let direct = lit_after(0, None);
+        near(lit_after(3, Some(0)), direct);
+        near(lit_after(1, Some(1)), lit_after(1, None));
+        near(lit_after(3, Some(9)), lit_after(3, None));
+    }
+}
+
 #[test]
 fn only_linked_objects_are_lit() {
     for (name, kind) in kinds() {

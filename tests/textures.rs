@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use half::f16;
-use penumbra::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
+use penumbra::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
 use penumbra::error::{Place, Warnings};
 use penumbra::texture::{Image, Texture};
 
@@ -11,7 +11,8 @@ const WRAPS: [Wrap; 4] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black];
 
 fn desc(size: [u32; 2], channels: u8, color_space: ColorSpace, pixels: PixelData) -> ImageDesc {
     let place = Place::file("a.glb").at("image 0");
-    ImageDesc { name: "wood".into(), place, width: size[0], height: size[1], channels, color_space, pixels }
+    let ([width, height], blending) = (size, Blending::default());
+    ImageDesc { name: "wood".into(), place, width, height, channels, color_space, blending, pixels }
 }
 
 fn image(size: [u32; 2], channels: u8, color_space: ColorSpace, pixels: PixelData) -> Arc<Image> {
@@ -328,4 +329,80 @@ fn images_whose_texels_do_not_fill_them_are_refused() {
         let error = Image::new(broken, &mut Warnings::new()).expect_err("broken");
         assert!(error.to_string().contains("wood"), "{error}");
     }
+}
+
+/// An image whose texels are blended otherwise than in light.
+fn blended(size: [u32; 2], channels: u8, texels: Vec<u8>, blending: Blending) -> Arc<Image> {
+    let desc = ImageDesc { blending, ..desc(size, channels, ColorSpace::Srgb, PixelData::U8(texels)) };
+    Arc::new(Image::new(desc, &mut Warnings::new()).expect("a sound image"))
+}
+
+fn decoded(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// What is stored is blended and decoded last, and from afar the image is the mean of that.
+#[test]
+fn encoded_values_are_blended_as_they_are_stored() {
+    let stripes: Vec<u8> = (0..64).map(|i| if i % 2 == 0 { 0 } else { 255 }).collect();
+    let blending = Blending { encoded: Some(Filter::Linear), associated: false };
+    let image = blended([64, 1], 1, stripes, blending);
+    let texture = linear(&image, Wrap::Clamp);
+    for i in 0..=16 {
+        let t = f64::from(i) / 16.0;
+        let found = texture.lookup([((10.5 + t) / 64.0) as f32, 0.5], 0.0)[0];
+        assert!((f64::from(found) - decoded(t)).abs() < 1e-6, "{t}: {found}");
+    }
+    // Between texels the mean is that of the curve; half a texel at both ends is what it is.
+    let steps = 10_000;
+    let mean: f64 =
+        (0..steps).map(|i| decoded((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps);
+    let expected = (63.0 * mean + 0.5) / 64.0;
+    let found = f64::from(texture.lookup([0.5, 0.5], 1.0)[0]);
+    assert!((found - expected).abs() < 0.003, "{found} is not {expected}");
+    assert!((found - 0.5).abs() > 0.1, "in light it would be half");
+}
+
+/// What is transparent gives its neighbours no colour, near and from afar.
+#[test]
+fn colors_times_alpha_are_divided_by_what_comes_out() {
+    let texels: Vec<u8> = (0..8).flat_map(|i| if i % 2 == 0 { [200, 100, 50, 255] } else { [0; 4] }).collect();
+    let blending = Blending { encoded: Some(Filter::Linear), associated: true };
+    let texture = linear(&blended([8, 1], 4, texels, blending), Wrap::Repeat);
+    let expected = [200.0, 100.0, 50.0].map(|code: f64| decoded(code / 255.0) as f32);
+    for (u, footprint, alpha) in [(1.0 / 16.0, 0.0, 1.0), (1.0 / 8.0, 0.0, 0.5), (0.3, 0.0, 0.1), (0.3, 1.0, 0.5)] {
+        let [r, g, b, a] = texture.lookup([u, 0.5], footprint);
+        assert!((a - alpha).abs() < 0.003, "{u}: {a} is not {alpha}");
+        for (found, expected) in [r, g, b].into_iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 0.006 * expected.max(0.1),
+                "{u}, {footprint}: {found} is not {expected}"
+            );
+        }
+    }
+}
+
+/// B-splines keep what is straight, spread a single texel over four by their weights, and go on beyond edges.
+#[test]
+fn cubic_lookups_are_splines() {
+    let ramp = image([8, 1], 1, ColorSpace::Linear, PixelData::F32((0..8).map(|i| i as f32).collect()));
+    let cubic = |image: &Arc<Image>, wrap: Wrap| texture(image, [wrap, wrap], Filter::Cubic);
+    for i in 20..=60 {
+        let x = i as f32 / 10.0;
+        let found = cubic(&ramp, Wrap::Clamp).lookup([x / 8.0, 0.5], 0.0)[0];
+        assert!((found - (x - 0.5)).abs() < 1e-5, "{x}: {found}");
+    }
+    let mut one = vec![0.0; 8];
+    one[4] = 6.0;
+    let one = image([8, 1], 1, ColorSpace::Linear, PixelData::F32(one));
+    for wrap in WRAPS {
+        for (x, expected) in [(4.5, 4.0), (3.5, 1.0), (5.5, 1.0), (2.5, 0.0), (5.0, 2.875)] {
+            let found = cubic(&one, wrap).lookup([x / 8.0, 0.5], 0.0)[0];
+            // Clamped rows are the same, those outside of a black border are black.
+            let rows = if wrap == Wrap::Black { 4.0 / 6.0 } else { 1.0 };
+            assert!((found - rows * expected).abs() < 1e-5, "{wrap:?} {x}: {found}");
+        }
+    }
+    let edge = cubic(&ramp, Wrap::Clamp);
+    assert_eq!([edge.lookup([5.0, 0.5], 0.0)[0], edge.lookup([-5.0, 0.5], 0.0)[0]], [7.0, 0.0]);
 }

@@ -18,6 +18,12 @@ _PREVIEW_INTERVAL = 0.1
 VIEWPORTS = {}
 
 
+def _shortcuts(scene):
+    """Cycles' shortcuts in light paths that Penumbra does not take."""
+    if getattr(getattr(scene, "cycles", None), "use_fast_gi", False):
+        yield "Fast GI Approximation is not used: bounces are all computed"
+
+
 class PenumbraRenderEngine(bpy.types.RenderEngine):
     """Renders with Penumbra."""
 
@@ -58,7 +64,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             f'the shader AOV "{name}" is left out: another pass has its name' for name in passes.clashing(view_layer)
         ]
         missing = [f"the pass {name} is not rendered yet; it is left out" for name in passes.missing(view_layer)]
-        self._tell([*libraries.missing(), *clashing, *missing, *exporter.warnings])
+        self._tell([*libraries.missing(), *clashing, *missing, *_shortcuts(scene), *exporter.warnings])
         if self.test_break():
             return
 

@@ -93,6 +93,11 @@ impl Boundary {
 }
 
 impl Glass {
+    /// Width of the microfacets: the root of the product of both.
+    pub fn width(&self) -> f32 {
+        self.ggx.map_or(0.0, |ggx| (ggx.x * ggx.y).sqrt())
+    }
+
     /// Seen from `wo`. `multiscatter` gives back what scatters between microfacets.
     pub fn new(ggx: Option<Ggx>, boundary: Boundary, multiscatter: bool, wo: Vec3) -> Self {
         let passage = Passage::of(ggx, &boundary);

@@ -142,6 +142,15 @@ impl AnyLobe {
         }
     }
 
+    /// Of glass, the width of its microfacets.
+    #[cold]
+    pub fn passage_width(&self) -> Option<f32> {
+        match self {
+            Self::Glass(lobe) => Some(lobe.width()),
+            _ => None,
+        }
+    }
+
     /// Of an interface, leaves reflection and passage as `kept` says; false where nothing is left.
     #[cold]
     pub fn keep(&mut self, kept: [bool; 2]) -> bool {

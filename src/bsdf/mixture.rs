@@ -241,6 +241,12 @@ impl Bsdf {
         self.terms.iter().any(|term| term.lobe.transmits())
     }
 
+    /// Width of the widest microfacets that let light pass: the root of the product of both widths, 0 for perfect glass.
+    #[cold]
+    pub fn passage_width(&self) -> f32 {
+        self.terms.iter().filter_map(|term| term.lobe.passage_width()).fold(0.0, f32::max)
+    }
+
     /// True where some channel is not scattered diffusely.
     pub fn lacks_diffuse(&self) -> bool {
         let diffuse: Rgb = self.terms.iter().filter(|t| t.class == Class::Diffuse).map(|t| t.color).sum();

@@ -60,7 +60,8 @@ pub(super) fn add(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface) {
         builder.add_beneath(through * share, &Subsurface { ior, ..*subsurface }, sqr(unit(surface.roughness)));
         through *= 1.0 - share;
     }
-    builder.add_diffuse(through, base, surface.diffuse_roughness, true);
+    let color = if surface.gains { surface.base_color.map(|c| c.max(0.0)) } else { base };
+    builder.add_diffuse(through, color, surface.diffuse_roughness, true);
 }
 
 /// What is left of light below a layer of `albedo`.

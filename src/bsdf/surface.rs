@@ -12,6 +12,8 @@ pub struct Surface<C = Rgb, S = f32> {
     /// Diffuse albedo of a dielectric, reflectance of a metal at normal incidence, tint of what is
     /// transmitted; 0 to 1.
     pub base_color: C,
+    /// True where `base_color` may be above 1 for the diffuse part.
+    pub gains: bool,
     /// 0 dielectric, 1 metal.
     pub metallic: S,
     /// What a metal reflects near grazing, at 82 degrees, over what it would by Schlick's curve.
@@ -103,6 +105,7 @@ impl Default for Surface {
     fn default() -> Self {
         Self {
             base_color: Rgb::WHITE,
+            gains: false,
             metallic: 0.0,
             metal_edge: Rgb::WHITE,
             diffuse_roughness: 0.0,
@@ -130,6 +133,7 @@ impl<C, S> Surface<C, S> {
     pub fn map<D, T>(&self, mut color: impl FnMut(&C) -> D, mut scalar: impl FnMut(&S) -> T) -> Surface<D, T> {
         Surface {
             base_color: color(&self.base_color),
+            gains: self.gains,
             metallic: scalar(&self.metallic),
             metal_edge: color(&self.metal_edge),
             diffuse_roughness: scalar(&self.diffuse_roughness),

@@ -62,6 +62,11 @@ pub fn check(scene: &SceneDesc) -> Result<()> {
             let shader = &scene.dome_shaders[shader as usize];
             check_graph(scene, &shader.graph, [shader.radiance], &light.place)?;
         }
+        if let Some(shader) = light.shaping.shader {
+            index(shader, scene.lamp_shaders.len(), &light.place, "lamp shader")?;
+            let shader = &scene.lamp_shaders[shader as usize];
+            check_graph(scene, &shader.graph, [shader.factor], &light.place)?;
+        }
         if let Some(ies) = light.shaping.ies {
             index(ies.profile, scene.ies.len(), &light.place, "IES profile")?;
         }

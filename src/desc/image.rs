@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use half::f16;
 
+use super::texture::Filter;
 use crate::error::Place;
 
 /// How stored values become linear Rec.709.
@@ -78,6 +79,19 @@ impl fmt::Debug for PixelData {
     }
 }
 
+/// Which values of neighbouring texels are blended where an image is looked up between them.
+///
+/// The default is linear light of straight colours, as GPUs do and as glTF and USD mean it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Blending {
+    /// Values as they are stored, by this filter; what comes out is decoded. That is darker between texels of unlike
+    /// values, so that the image is that much darker from afar, too.
+    pub encoded: Option<Filter>,
+    /// Colours are stored times alpha; what comes out is divided by the blended alpha, so that what is transparent
+    /// gives its neighbours no colour.
+    pub associated: bool,
+}
+
 /// A decoded image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageDesc {
@@ -93,6 +107,8 @@ pub struct ImageDesc {
     pub channels: u8,
     /// Transfer function.
     pub color_space: ColorSpace,
+    /// What is blended between texels.
+    pub blending: Blending,
     /// The texels.
     pub pixels: PixelData,
 }

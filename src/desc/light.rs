@@ -135,6 +135,20 @@ pub struct DomeShader {
     pub suns: Vec<DomeSun>,
 }
 
+/// A factor of what a lamp emits, by its graph.
+///
+/// Its graph sees the lamp as a surface from where its light goes: normals and the direction to whoever looks are the
+/// direction in which light leaves, of areas normals are their axis. Object space is the lamp's. Parametric coordinates
+/// are 0 to 1: over an area along its x and y, over the square around the cone of a spot, over the sphere around a point
+/// (longitude and latitude), over the disk of a sun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LampShaderDesc {
+    /// How it is made.
+    pub graph: Graph,
+    /// The factor; negative places count as 0.
+    pub factor: ValueId,
+}
+
 /// The disk of a sun in a sky of a graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeSun {
@@ -156,6 +170,8 @@ pub struct ShapingDesc {
     pub focus_tint: [f64; 3],
     /// A measured distribution.
     pub ies: Option<IesRef>,
+    /// Index into `SceneDesc::lamp_shaders`.
+    pub shader: Option<u32>,
 }
 
 /// How the emission of an object varies with direction, as that of a light that stands somewhere.
@@ -274,6 +290,10 @@ pub struct LightLinks {
     pub blockers: Option<LinkSet>,
     /// Factors of what it lights by diffuse scattering, and by all other.
     pub response: [f64; 2],
+    /// How often light was scattered before, at most, where it lights (Cycles); `None` for no limit.
+    pub max_bounces: Option<u32>,
+    /// True for one that takes light away instead of giving it: Blender's lamps of negative power.
+    pub takes: bool,
 }
 
 impl Default for LightLinks {
@@ -285,6 +305,8 @@ impl Default for LightLinks {
             receivers: None,
             blockers: None,
             response: [1.0; 2],
+            max_bounces: None,
+            takes: false,
         }
     }
 }

@@ -40,6 +40,11 @@ pub struct MaterialDesc {
     pub graph: Graph,
     /// Diffuse albedo of dielectrics, normal-incidence reflectance of metals.
     pub base_color: ColorInput,
+    /// True where what is not physical counts as it is (Cycles): base colors above 1, for the diffuse part of a
+    /// dielectric, and emission below 0. Else both are cut.
+    pub unbounded: bool,
+    /// True where `normal` is that of the surface itself, as if it were built so: normals of parts bend from it.
+    pub relief: bool,
     /// Alpha; `alpha_mode` says how it is read. Times the vertex colour's alpha.
     pub alpha: ScalarInput,
     /// How alpha is read.
@@ -128,6 +133,8 @@ impl Default for MaterialDesc {
             metal_edge: ColorInput::constant([1.0; 3]),
             diffuse_roughness: ScalarInput::constant(0.0),
             roughness: ScalarInput::constant(0.5),
+            unbounded: false,
+            relief: false,
             multiscatter: true,
             ior: ScalarInput::constant(1.5),
             specular: ScalarInput::constant(1.0),

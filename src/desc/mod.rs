@@ -30,12 +30,12 @@ pub use camera::{CameraDesc, LensDesc, ProjectionDesc};
 pub use check::check;
 pub use closure::{ClosureDesc, FacetsDesc, PartDesc};
 pub use framing::{Conform, EffectsOff, FramingDesc};
-pub use image::{ColorSpace, ImageDesc, PixelData};
+pub use image::{Blending, ColorSpace, ImageDesc, PixelData};
 pub use input::{Channel, ColorInput, NormalInput, ScalarInput};
 pub use layers::{AnisotropyDesc, AnisotropyLaw, CoatDesc, IridescenceDesc, SheenDesc, TranslucentDesc, VolumeDesc};
 pub use light::{
-    ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LightDesc, LightKind, LightLinks, LinkSet,
-    ShapedDesc, ShapingDesc,
+    ConeDesc, DecayDesc, DecayLaw, DomeShader, DomeSun, IesDesc, IesRef, LampShaderDesc, LightDesc, LightKind,
+    LightLinks, LinkSet, ShapedDesc, ShapingDesc,
 };
 pub use material::{AlphaMode, MaterialDesc};
 pub use mesh::{Attribute, InstanceDesc, MeshDesc, Motion, NamedAttribute, ObjectInfo, ShapeRef, Visibility};
@@ -73,6 +73,8 @@ pub struct SceneDesc {
     pub lights: Vec<LightDesc>,
     /// What domes emit that is more than an image.
     pub dome_shaders: Vec<DomeShader>,
+    /// What lamps emit that varies over them.
+    pub lamp_shaders: Vec<LampShaderDesc>,
     /// What the background gives as AOVs; those of a transparent film are 0.
     pub background_aovs: BackgroundAovs,
     /// How many more lights the file has that could not be read; the door has told why.

@@ -18,6 +18,8 @@ pub struct RenderDesc {
     /// False where alpha is 1 there, even of a black one. `None` goes by what is there: alpha is 1 in front of a
     /// dome and 0 in front of nothing.
     pub film_transparent: Option<bool>,
+    /// Roughness up to which a transparent film is so seen through glass, too; `None` for no glass.
+    pub transparent_glass: Option<f64>,
     /// Opacity from which on a surface is what normal, UV, depth, position and index passes show; thinner ones
     /// are looked through. 0 for the first surface, whatever it is.
     pub pass_alpha_threshold: f64,
@@ -53,6 +55,7 @@ impl Default for RenderDesc {
             framing: FramingDesc::default(),
             crop: None,
             film_transparent: None,
+            transparent_glass: None,
             pass_alpha_threshold: 0.5,
             passes: Vec::new(),
             aovs: Vec::new(),

@@ -24,6 +24,8 @@ pub enum Filter {
     Linear,
     /// The one texel that holds the point, at the finest level.
     Nearest,
+    /// As linear, but with a cubic B-spline over 4 × 4 texels in the finest level: smooth, and softer.
+    Cubic,
 }
 
 /// An image with its wrap modes.

@@ -8,7 +8,7 @@ use exr::meta::attribute::AttributeValue;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use half::f16;
 
-use crate::desc::{ColorSpace, ImageDesc, PixelData};
+use crate::desc::{Blending, ColorSpace, ImageDesc, PixelData};
 use crate::error::{Error, Place, Result};
 
 /// True for bytes that start as an OpenEXR file does.
@@ -44,6 +44,7 @@ pub(super) fn decode(bytes: &[u8], name: &Arc<str>, place: &Place) -> Result<Ima
             height: h,
             channels: channels.len() as u8,
             color_space: ColorSpace::Linear,
+            blending: Blending::default(),
             pixels: interleave(&channels, width * height),
         });
     }

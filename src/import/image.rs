@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
 use super::exr_image;
 pub(super) use super::exr_image::world_to_screen;
-use crate::desc::{ColorSpace, ImageDesc, PixelData};
+use crate::desc::{Blending, ColorSpace, ImageDesc, PixelData};
 use crate::error::{Error, Place, Result};
 
 /// Largest width and height.
@@ -63,7 +63,8 @@ pub fn decode_image(
         PixelData::F16(_) | PixelData::F32(_) => ColorSpace::Linear,
         PixelData::U8(_) | PixelData::U16(_) => color_space,
     };
-    Ok(ImageDesc { name: name.clone(), place: place.clone(), width, height, channels, color_space, pixels })
+    let (name, place, blending) = (name.clone(), place.clone(), Blending::default());
+    Ok(ImageDesc { name, place, width, height, channels, color_space, blending, pixels })
 }
 
 /// What a file of `length` bytes may decode to.

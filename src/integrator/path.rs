@@ -57,6 +57,8 @@ struct Path<'a> {
     min_pdf: f32,
     /// The last scattering; `None` for rays from the camera.
     last: Option<Scattering>,
+    /// True while it has met nothing but glass through which a transparent film is seen.
+    sees_film: bool,
     /// What limits and graphs ask of it.
     state: PathState,
     /// Where `ray` would have begun had it passed no surface since, and how far it has come.
@@ -82,6 +84,7 @@ impl<'a> Path<'a> {
             vertex: 0,
             min_pdf: f32::INFINITY,
             last: None,
+            sees_film: scene.transparent_glass.is_some(),
             state: PathState::CAMERA,
             start: ray.o,
             travelled: 0.0,

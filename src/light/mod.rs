@@ -35,7 +35,7 @@ pub use emission::Emission;
 pub use flat::Flat;
 pub use mesh::{MeshEmitters, MeshLight};
 pub use point::Point;
-pub use profile::{Cone, Decay, Falloff, Ies, Profile, Shaping};
+pub use profile::{Cone, Decay, Drawn, Falloff, Ies, Profile, Shaping};
 pub use rect::Rect;
 pub use rounds::{RoundEmitters, RoundLight};
 pub use rules::{Light, Rules, Seen, Shadow};

@@ -3,6 +3,7 @@
 
 mod cone;
 mod decay;
+mod drawn;
 mod ies;
 mod quadrature;
 
@@ -15,6 +16,7 @@ use crate::math::{Bounds, DMat3, DVec3, Rgb, Vec3};
 
 pub use cone::Cone;
 pub use decay::{Decay, Falloff};
+pub use drawn::Drawn;
 pub use ies::Ies;
 
 /// Cosine of the angle by which the light tree may be off at the rim of a cone: sines that come from
@@ -44,6 +46,8 @@ pub struct Shaping {
     pub focus_tint: [f64; 3],
     /// A measured distribution.
     pub ies: Option<Ies>,
+    /// A factor by direction and distance on top of all that.
+    pub drawn: Option<Drawn>,
 }
 
 /// Shaping and decay of one light; lights that have neither hold none.
@@ -85,7 +89,11 @@ impl Profile {
         };
         profile.find_cone(axes);
         profile.cos_half = (profile.half + 1e-6).min(PI).cos() as f32;
-        profile.mean = profile.mean_over(if stretch.is_some() { AZIMUTHS } else { 1 }, &|_| 1.0);
+        if let Some(drawn) = &profile.shaping.drawn {
+            profile.peak *= drawn.peak(profile.axis, profile.half);
+        }
+        let uneven = stretch.is_some() || profile.shaping.drawn.is_some();
+        profile.mean = profile.mean_over(if uneven { AZIMUTHS } else { 1 }, &|_| 1.0);
         profile
     }
 
@@ -120,12 +128,25 @@ impl Profile {
     /// The factor of what leaves the light along the unit direction `w` and arrives after `dist` metres.
     pub fn factor(&self, w: Vec3, dist: f32) -> Rgb {
         let decay = Rgb::splat(self.decay.factor(f64::from(dist)) as f32);
-        if self.shaping.is_even() { decay } else { decay * self.shape(w.as_dvec3(), false) }
+        if self.shaping.is_even() { decay } else { decay * self.shape_at(w.as_dvec3(), dist, false) }
     }
 
-    /// The factor of direction `w`, unit or not; `averaged` takes the mean of a measured distribution
-    /// over all azimuths.
+    /// The factor of direction `w`, unit or not, without decay, a metre away; `averaged` takes the mean of a measured
+    /// distribution over all azimuths.
     pub(super) fn shape(&self, w: DVec3, averaged: bool) -> Rgb {
+        self.shape_at(w, 1.0, averaged)
+    }
+
+    fn shape_at(&self, w: DVec3, dist: f32, averaged: bool) -> Rgb {
+        let shape = self.round_shape(w, averaged);
+        match &self.shaping.drawn {
+            Some(drawn) if !shape.is_black() => shape * drawn.factor(w, dist),
+            _ => shape,
+        }
+    }
+
+    /// All but what is drawn.
+    fn round_shape(&self, w: DVec3, averaged: bool) -> Rgb {
         let shaping = &self.shaping;
         let mut factor = 1.0;
         if let Some(cone) = &shaping.cone {
@@ -254,7 +275,7 @@ impl Profile {
 impl Shaping {
     /// True where emission does not vary with direction.
     fn is_even(&self) -> bool {
-        self.cone.is_none() && self.focus == 0.0 && self.ies.is_none()
+        self.cone.is_none() && self.focus == 0.0 && self.ies.is_none() && self.drawn.is_none()
     }
 
     fn peak(&self) -> Rgb {

@@ -43,6 +43,8 @@ pub struct Rules {
     pub receivers: Option<Arc<[bool]>>,
     /// Factors of what it lights by diffuse scattering, and by all other; `None` where both are 1.
     pub response: Option<[f32; 2]>,
+    /// How often a path may have been scattered where it is lit.
+    pub max_bounces: u32,
 }
 
 /// A light of the scene.
@@ -61,8 +63,15 @@ impl Seen {
 
 impl Rules {
     /// A light without any rule.
-    pub const NONE: Self =
-        Self { group: None, seen: Seen::ALL, shadow: Shadow::Cast, look: None, receivers: None, response: None };
+    pub const NONE: Self = Self {
+        group: None,
+        seen: Seen::ALL,
+        shadow: Shadow::Cast,
+        look: None,
+        receivers: None,
+        response: None,
+        max_bounces: u32::MAX,
+    };
 
     /// True where the light stops at whatever rays stop at: one that finds it counts it where it ends. Else, with
     /// shadows of its own, it is counted where the ray begins.

@@ -2,14 +2,14 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{PyReadonlyArray1, PyReadonlyArrayDyn};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::exception;
 use crate::desc::SceneDesc;
 use crate::error::{Result, Warnings};
-use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints};
+use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints, random_per_island};
 
 /// A scene in Blender's terms: one document and the arrays of its meshes. The add-on fills it; pieces
 /// that are set again replace the old ones.
@@ -143,6 +143,14 @@ impl Scene {
     ) -> PyResult<()> {
         let instances = instances.as_slice().map_err(|_| contiguous())?;
         self.lock().add_instance_motion(time, instances, floats(&matrices)?).map_err(|error| exception(&error))
+    }
+
+    /// The numbers of Random Per Island for each of `points` points of a mesh: float32. `edges` (int32, (e, 2)) are pairs
+    /// of points.
+    #[staticmethod]
+    fn random_per_island<'py>(py: Python<'py>, points: usize, edges: Ints<'_>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let edges = ints(&edges)?;
+        Ok(PyArray1::from_vec(py, py.detach(|| random_per_island(points, edges))))
     }
 
     /// Forgets the shape `key`.

@@ -157,7 +157,11 @@ impl Viewport {
             session.exposure = desc.cameras.first().map_or(1.0, |camera| camera.exposure);
             let camera = view.camera(session.exposure, &desc.place);
             desc.cameras = vec![camera];
-            desc.render = RenderDesc { film_transparent: desc.render.film_transparent, ..RenderDesc::default() };
+            desc.render = RenderDesc {
+                film_transparent: desc.render.film_transparent,
+                transparent_glass: desc.render.transparent_glass,
+                ..RenderDesc::default()
+            };
             let view = View { camera: None, size: Some(view.size) };
             let cache = session.cache.get_or_insert_with(Cache::new);
             let prepared = prepare_with(desc, &view, &settings, cache)?;

@@ -142,6 +142,10 @@ pub struct Material {
     pub emission: ColorInput,
     /// True where nothing scatters and the emission is what is seen.
     pub unlit: bool,
+    /// True where emission may be below 0.
+    pub unbounded: bool,
+    /// The normal of the whole is that of the surface itself.
+    pub relief: bool,
     /// Colours of shapes and instances multiply the base colour and alpha.
     pub tinted: bool,
     /// The camera sees a hole in the picture instead.
@@ -356,7 +360,7 @@ impl Scene {
         }
         match self.vertex_color(it) {
             Some([r, g, b, _]) if material.unlit => le * Rgb::new(r, g, b),
-            _ if material.programs.is_some() => le.map(|c| c.max(0.0)),
+            _ if material.programs.is_some() && !material.unbounded => le.map(|c| c.max(0.0)),
             _ => le,
         }
     }

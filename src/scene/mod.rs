@@ -10,6 +10,7 @@ mod ids;
 mod inside;
 mod instance;
 mod interaction;
+mod lamp_shading;
 mod material;
 mod media;
 mod path_state;
@@ -70,6 +71,8 @@ pub struct Scene {
     pub follows_camera: bool,
     /// True where Combined lacks what lies behind everything.
     pub film_transparent: bool,
+    /// Width of microfacets up to which a transparent film is so seen through glass, too; `None` for no glass.
+    pub transparent_glass: Option<f32>,
     /// Surfaces that a path or a shadow ray may pass unscattered: see the setting of transparent bounces.
     pub max_transparent: u32,
     /// Opacity from which on a surface is what the data passes show.

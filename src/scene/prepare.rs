@@ -10,6 +10,7 @@ mod flattened;
 mod geometry;
 mod graphs;
 mod lamp;
+mod lamp_shader;
 mod lights;
 mod links;
 mod materials;
@@ -98,7 +99,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, &camera_desc, settings, &passes);
-    let Materials { list: materials, textures, names, domes, background } =
+    let Materials { list: materials, textures, names, domes, lamps, background } =
         materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
     let background_aovs = background.map(|(program, outputs)| {
@@ -120,7 +121,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         let dome = default_dome.as_ref();
         let groups = passes.groups();
         let (materials, textures) = (&materials, &textures);
-        let shared = Shared { materials, domes: &domes, textures, asked: &asked, camera, origin };
+        let shared = Shared { materials, domes: &domes, lamps: &lamps, textures, asked: &asked, camera, origin };
         let lights = lights::prepare(&desc, dome, &links, groups, &mut geometry, &shared, cache, &mut warnings);
         tell_of_darkness(&desc, &lights, materials, &mut warnings);
         lights
@@ -150,8 +151,12 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         effects,
         lights,
         background_visible,
-        follows_camera: desc.dome_shaders.iter().any(|dome| graphs::follows_camera(&dome.graph, [dome.radiance])),
+        follows_camera: follows_camera(&desc),
         film_transparent,
+        transparent_glass: desc.render.transparent_glass.filter(|_| film_transparent).map(|roughness| {
+            let roughness = if roughness > 0.0 { roughness.min(1.0) as f32 } else { 0.0 };
+            roughness * roughness
+        }),
         max_transparent: settings.transparent_bounces,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         ids: Ids::of(&desc, &geometry.placed),
@@ -190,6 +195,12 @@ impl Scene {
         self.exposure = camera::exposure(&camera);
         Ok(())
     }
+}
+
+/// True where domes or lamps go by the camera.
+fn follows_camera(desc: &SceneDesc) -> bool {
+    desc.dome_shaders.iter().any(|dome| graphs::follows_camera(&dome.graph, [dome.radiance]))
+        || desc.lamp_shaders.iter().any(|lamp| graphs::follows_camera(&lamp.graph, [lamp.factor]))
 }
 
 /// Size of the part of a picture of `whole` that is wanted.

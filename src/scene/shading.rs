@@ -1,7 +1,7 @@
 //! What scatters at a point: the parts of its material evaluated, in its shading frame.
 
 use super::blur::Blur;
-use super::material::{Lookups, NormalInput, Part, ScalarInput};
+use super::material::{Lookups, Material, NormalInput, Part, ScalarInput};
 use super::{Interaction, Scene};
 use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Softening, Stretched};
 use crate::desc::AnisotropyLaw;
@@ -95,9 +95,11 @@ impl Scene {
     pub fn builder<'b>(&self, bsdf: &'b mut Bsdf, it: &Interaction, frame: &Frame) -> Builder<'b> {
         let side = if it.front { 1.0 } else { -1.0 };
         let mut builder = Builder::new(bsdf, frame.to_local(it.wo), frame.to_local(it.ng * side), it.front);
-        let bumps = self.material(it).bumps;
+        let &Material { bumps, relief, .. } = self.material(it);
         let frequency = self.instance(it.instance).terminator.frequency;
-        if it.ns != it.ng {
+        if relief {
+            builder.set_smooth(Vec3::Z);
+        } else if it.ns != it.ng {
             builder.set_smooth(frame.to_local(it.ns * side));
         }
         if bumps || frequency > 1.0 {

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::pyramid;
 use super::texel::{Format, Level, Reader, linearize};
-use crate::desc::{ImageDesc, PixelData};
+use super::{blend, pyramid};
+use crate::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData};
 use crate::error::{Error, Result, Warnings};
 
 /// A mip pyramid, read as linear Rec.709 and alpha.
@@ -16,6 +16,8 @@ use crate::error::{Error, Result, Warnings};
 pub struct Image {
     name: Arc<str>,
     pub(super) format: Format,
+    /// Of the finest level; all others hold light.
+    pub(super) blending: Blending,
     pub(super) levels: Vec<Level>,
     constant: Option<[f32; 4]>,
 }
@@ -27,7 +29,7 @@ impl Image {
     /// [`Error::Invalid`] where the image is empty, has no channels or more than four, or its texels
     /// don't fill it.
     pub fn new(desc: ImageDesc, warnings: &mut Warnings) -> Result<Self> {
-        let ImageDesc { name, place, width, height, channels, color_space, mut pixels } = desc;
+        let ImageDesc { name, place, width, height, channels, color_space, mut blending, mut pixels } = desc;
         let values = u64::from(width) * u64::from(height) * u64::from(channels);
         if values == 0 || channels > 4 || values != pixels.len() as u64 {
             let what = format!(
@@ -43,12 +45,23 @@ impl Image {
                 .push(&place, format!("image '{name}' holds {replaced} values that are NaN or infinite; they are 0"));
         }
 
+        blending.encoded = match &pixels {
+            // Made linear already.
+            PixelData::F16(_) | PixelData::F32(_) => None,
+            // Colours were multiplied by alpha as they are stored.
+            _ if color_space == ColorSpace::Srgb && blending.associated => blending.encoded.or(Some(Filter::Linear)),
+            _ if color_space == ColorSpace::Srgb => blending.encoded,
+            _ => None,
+        };
         let mut finest = Level::new(width, height, format.channels, pixels);
         let uniform = is_uniform(&finest.pixels, format.channels);
         if uniform {
-            finest = Level { strides: [0, 0], pixels: first_texel(&finest.pixels, format.channels), ..finest };
+            let light = first_texel(&finest.pixels, format, blending);
+            finest = Level { strides: [0, 0], pixels: format.store(&light, &finest.pixels), ..finest };
+            blending = Blending::default();
         }
-        let mut image = Self { name, format, levels: pyramid::build(finest, format), constant: None };
+        let levels = pyramid::build(finest, format, blending);
+        let mut image = Self { name, format, blending, levels, constant: None };
         if uniform {
             image.constant = Some(image.texel(0, 0));
         }
@@ -99,9 +112,14 @@ impl Image {
 
     /// The same of any level.
     pub fn level_texel(&self, level: usize, x: u32, y: u32) -> [f32; 4] {
+        let finest = level == 0;
         let level = &self.levels[level.min(self.levels.len() - 1)];
         let (x, y) = (x.min(level.width - 1), y.min(level.height - 1));
-        self.format.read(&level.pixels, One(level.offset(x as usize, y as usize)))
+        let one = One(level.offset(x as usize, y as usize));
+        if finest && self.blending != Blending::default() {
+            return blend::finish(self.format.stored(self.blending).read(&level.pixels, one), self.blending);
+        }
+        self.format.read(&level.pixels, one)
     }
 }
 
@@ -125,11 +143,13 @@ fn is_uniform(pixels: &PixelData, channels: usize) -> bool {
     }
 }
 
-fn first_texel(pixels: &PixelData, channels: usize) -> PixelData {
-    match pixels {
-        PixelData::U8(v) => PixelData::U8(v[..channels].to_vec()),
-        PixelData::U16(v) => PixelData::U16(v[..channels].to_vec()),
-        PixelData::F16(v) => PixelData::F16(v[..channels].to_vec()),
-        PixelData::F32(v) => PixelData::F32(v[..channels].to_vec()),
+/// Light of the first texel, as many values as it has.
+fn first_texel(pixels: &PixelData, format: Format, blending: Blending) -> Vec<f32> {
+    let [r, g, b, a] = blend::finish(format.stored(blending).read(pixels, One(0)), blending);
+    match format.channels {
+        1 => vec![r],
+        2 => vec![r, a],
+        3 => vec![r, g, b],
+        _ => vec![r, g, b, a],
     }
 }

@@ -8,9 +8,10 @@
 
 use std::sync::Arc;
 
+use super::blend::{Taps, Window, divided, finish};
 use super::image::Image;
 use super::texel::{Level, Reader};
-use crate::desc::{Filter, TextureDesc, Wrap};
+use crate::desc::{Blending, Filter, TextureDesc, Wrap};
 
 /// An image with its wrap modes and filter.
 #[derive(Clone, Debug)]
@@ -18,12 +19,15 @@ pub struct Texture {
     image: Arc<Image>,
     wrap: [Wrap; 2],
     filter: Filter,
+    /// Bilinear in light on every level.
+    plain: bool,
 }
 
 impl Texture {
     /// The image of `desc` as `desc` looks it up.
     pub fn new(image: Arc<Image>, desc: &TextureDesc) -> Self {
-        Self { image, wrap: [desc.wrap_u, desc.wrap_v], filter: desc.filter }
+        let plain = image.blending == Blending::default() && desc.filter == Filter::Linear;
+        Self { image, wrap: [desc.wrap_u, desc.wrap_v], filter: desc.filter, plain }
     }
 
     /// What it looks up.
@@ -47,12 +51,34 @@ impl Texture {
         }
         let texels = footprint * levels[0].width.max(levels[0].height) as f32;
         if texels.is_nan() || texels <= 1.0 {
-            return self.bilinear(&levels[0], uv);
+            return self.within(0, uv);
         }
         let lod = texels.log2().min((levels.len() - 1) as f32);
         let (level, t) = (lod as usize, lod.fract());
-        let fine = self.bilinear(&levels[level], uv);
-        if t == 0.0 { fine } else { mix(fine, self.bilinear(&levels[level + 1], uv), t) }
+        let fine = self.within(level, uv);
+        if t == 0.0 { fine } else { mix(fine, self.within(level + 1, uv), t) }
+    }
+
+    /// Light within one level.
+    fn within(&self, level: usize, uv: [f32; 2]) -> [f32; 4] {
+        if self.plain { self.bilinear(&self.image.levels[level], uv) } else { self.blended(level, uv) }
+    }
+
+    /// What is not bilinear in light, see [`super::blend`].
+    #[cold]
+    #[inline(never)]
+    fn blended(&self, level: usize, uv: [f32; 2]) -> [f32; 4] {
+        let Image { format, blending, levels, .. } = &*self.image;
+        let (of, finest) = (&levels[level], level == 0);
+        let filter = if finest { self.filter } else { Filter::Linear };
+        let x = Taps::at(uv[0], of.width, self.wrap[0], filter);
+        let y = Taps::at(uv[1], of.height, self.wrap[1], filter);
+        let window = Window { level: of, x, y, associate: blending.associated && !finest };
+        if finest {
+            return finish(format.stored(*blending).read(&of.pixels, window), *blending);
+        }
+        let value = format.read(&of.pixels, window);
+        if blending.associated { divided(value) } else { value }
     }
 
     fn bilinear(&self, level: &Level, uv: [f32; 2]) -> [f32; 4] {
@@ -77,7 +103,7 @@ impl Texture {
 }
 
 /// A coordinate moved to where the image lies: 0 to 1; for [`Wrap::Black`] at most one image further.
-fn fold(u: f32, wrap: Wrap) -> f32 {
+pub(super) fn fold(u: f32, wrap: Wrap) -> f32 {
     match wrap {
         Wrap::Repeat => u - u.floor(),
         Wrap::Mirror => {

@@ -8,11 +8,15 @@
 
 use rayon::prelude::*;
 
+use super::area;
 use super::texel::{Format, Level, Reader};
-use crate::desc::PixelData;
+use crate::desc::{Blending, PixelData};
 
 /// All levels, finest first, down to 1×1. A finest level with strides of 0 makes such levels.
-pub(super) fn build(finest: Level, format: Format) -> Vec<Level> {
+///
+/// Where texels are not blended in light, the finest level is as it is stored, and all others hold light, straight: means
+/// of what the filter gives ([`area`]).
+pub(super) fn build(finest: Level, format: Format, blending: Blending) -> Vec<Level> {
     let uniform = finest.strides == [0, 0];
     let mut levels = vec![finest];
     // The last level before it was rounded to the stored size.
@@ -27,8 +31,17 @@ pub(super) fn build(finest: Level, format: Format) -> Vec<Level> {
             Level { width: to[0], height: to[1], strides: [0, 0], pixels: above.pixels.clone() }
         } else {
             let shrink = Shrink { from, to, channels: format.channels };
-            let values = format.read(exact.as_ref().unwrap_or(&above.pixels), shrink);
-            let pixels = format.store(&values, &above.pixels);
+            let values = match &exact {
+                None if blending.encoded.is_some() => {
+                    shrink.lines(|y| area::Row { level: above, y, format, blending }.means())
+                }
+                None => format.read(&above.pixels, shrink),
+                Some(exact) => format.read(exact, shrink),
+            };
+            let pixels = match blending.associated {
+                true => format.store(&straight(&values, format.channels), &above.pixels),
+                false => format.store(&values, &above.pixels),
+            };
             exact = Some(PixelData::F32(values));
             Level::new(to[0], to[1], format.channels, pixels)
         };
@@ -45,15 +58,48 @@ struct Shrink {
 
 impl Reader<Vec<f32>> for Shrink {
     fn read(self, texel: impl Fn(usize) -> [f32; 4] + Sync) -> Vec<f32> {
+        let (width, channels) = (self.from[0] as usize, self.channels);
+        self.lines(|y| Texels { texel: &texel, start: y * width * channels, channels })
+    }
+}
+
+/// A row of texels to be averaged.
+trait Line {
+    fn at(&self, x: usize) -> [f32; 4];
+}
+
+impl Line for Vec<[f32; 4]> {
+    fn at(&self, x: usize) -> [f32; 4] {
+        self[x]
+    }
+}
+
+/// A row as it is stored.
+struct Texels<'a, F> {
+    texel: &'a F,
+    start: usize,
+    channels: usize,
+}
+
+impl<F: Fn(usize) -> [f32; 4]> Line for Texels<'_, F> {
+    #[inline(always)]
+    fn at(&self, x: usize) -> [f32; 4] {
+        (self.texel)(self.start + x * self.channels)
+    }
+}
+
+impl Shrink {
+    fn lines<L: Line>(self, line: impl Fn(usize) -> L + Sync) -> Vec<f32> {
         let Self { from, to, channels } = self;
         let (columns, rows) = (spans(from[0], to[0]), spans(from[1], to[1]));
         let mut out = vec![0.0; to[0] as usize * to[1] as usize * channels];
-        out.par_chunks_exact_mut(to[0] as usize * channels).zip(&rows).for_each(|(line, row)| {
-            for (out, column) in line.chunks_exact_mut(channels).zip(&columns) {
+        out.par_chunks_exact_mut(to[0] as usize * channels).zip(&rows).for_each(|(to, row)| {
+            let from: Vec<(L, f32)> = row.texels().map(|(y, weight)| (line(y), weight)).collect();
+            for (out, column) in to.chunks_exact_mut(channels).zip(&columns) {
                 let mut sum = [0.0; 4];
-                for (y, wy) in row.texels() {
+                for (line, wy) in &from {
                     for (x, wx) in column.texels() {
-                        let texel = texel((y * from[0] as usize + x) * channels);
+                        let texel = line.at(x);
                         for (sum, value) in sum.iter_mut().zip(texel) {
                             *sum += f64::from(wx * wy) * f64::from(value);
                         }
@@ -69,6 +115,17 @@ impl Reader<Vec<f32>> for Shrink {
         });
         out
     }
+}
+
+/// Colours divided by alpha, which is the last of `channels` values.
+fn straight(values: &[f32], channels: usize) -> Vec<f32> {
+    let mut values = values.to_vec();
+    for texel in values.chunks_exact_mut(channels) {
+        if let Some((alpha, color)) = texel.split_last_mut().filter(|(alpha, _)| **alpha > 0.0) {
+            color.iter_mut().for_each(|value| *value /= *alpha);
+        }
+    }
+    values
 }
 
 /// Which fine texels a coarse one covers along one axis, and how much of each.

@@ -9,6 +9,20 @@ use crate::math::srgb_to_linear_f64 as decode_f64;
 pub(super) static DECODE_U8: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| decode_f64(code as f64 / 255.0) as f32));
 
+/// Linear values at equal steps of encoded ones from 0 to 1, and one beyond.
+static STEPS: LazyLock<[f32; 1026]> = LazyLock::new(|| std::array::from_fn(|i| decode_f64(i as f64 / 1024.0) as f32));
+
+/// Light of an encoded colour from 0 to 1 whose values lie between codes, within 4e-7; alpha stays.
+pub(super) fn decode_all([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+    let table = &*STEPS;
+    let decoded = |value: f32| {
+        let place = (value * 1024.0).clamp(0.0, 1024.0);
+        let (i, t) = (place as usize, place.fract());
+        table[i] + t * (table[i + 1] - table[i])
+    };
+    [decoded(r), decoded(g), decoded(b), a]
+}
+
 /// Inverse of [`decode`].
 pub(super) fn encode(linear: f32) -> f32 {
     let l = f64::from(linear.abs());
@@ -59,6 +73,16 @@ mod tests {
             assert!((exact - f32::from(code)).abs() <= 0.5001, "{linear}: {code} for {exact}");
         }
         assert_eq!([-1.0, 2.0, f32::INFINITY, f32::NAN].map(encode_u8), [0, 255, 255, 0]);
+    }
+
+    #[test]
+    fn between_codes_the_table_is_the_function() {
+        for i in 0..=100_000 {
+            let value = i as f32 / 100_000.0;
+            let [r, g, b, a] = decode_all([value, 0.5 * value, 0.0, value]);
+            assert!((r - decode(value)).abs() < 4e-7 && (g - decode(0.5 * value)).abs() < 4e-7, "{value}: {r} {g}");
+            assert_eq!((b, a), (0.0, value));
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use half::f16;
 
 use super::srgb;
-use crate::desc::{ColorSpace, PixelData};
+use crate::desc::{Blending, ColorSpace, PixelData};
 
 /// Linear value of each 16-bit sRGB code.
 static DECODE_U16: LazyLock<Vec<f32>> =
@@ -48,6 +48,11 @@ impl Format {
     /// True for the channel that holds alpha.
     pub(super) fn is_alpha(self, channel: usize) -> bool {
         self.channels.is_multiple_of(2) && channel == self.channels - 1
+    }
+
+    /// How to read what texels of this `blending` are blended as.
+    pub(super) fn stored(self, blending: Blending) -> Self {
+        Self { space: if blending.encoded.is_some() { ColorSpace::Linear } else { self.space }, ..self }
     }
 
     /// Calls `with` with a function from the index of a texel's first value to color and alpha; the

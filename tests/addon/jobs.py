@@ -101,9 +101,7 @@ def mesh_time(count):
 
 def side_by_side(name, folder, spp=256, size=64):
     """The scene `name` by both engines: paths of the two EXR files."""
-    import scenes
-
-    getattr(scenes, name)()
+    _scene_of(name)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = int(size) * 4 // 3, int(size)
     scene.render.resolution_percentage = 100
@@ -139,9 +137,10 @@ def _left():
 
 def _scene_of(name):
     import export_scenes
+    import material_scenes
     import scenes
 
-    getattr(export_scenes if hasattr(export_scenes, name) else scenes, name)()
+    next(getattr(module, name) for module in (export_scenes, material_scenes, scenes) if hasattr(module, name))()
 
 
 class _Listener:
@@ -321,10 +320,11 @@ def left_out(folder):
     tree = material.node_tree
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
-    of_object = tree.nodes.new("ShaderNodeAttribute")
-    of_object.attribute_type, of_object.attribute_name = "OBJECT", "mine"
+    material.displacement_method = "BOTH"
+    pointed = tree.nodes.new("ShaderNodeNewGeometry")
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    tree.links.new(of_object.outputs["Color"], shader.inputs["Base Color"])
+    tree.links.new(pointed.outputs["Pointiness"], shader.inputs["Base Color"])
+    bpy.context.scene.cycles.use_fast_gi = True
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(material)
     _render(os.path.join(folder, "left_out.exr"))
@@ -594,21 +594,32 @@ def border(folder):
     return paths
 
 
-def node_wall(folder):
-    """All function nodes by both engines: names of the tiles, how many in a row, and the two pictures."""
-    import node_lab
-
-    names, columns, rows = node_lab.wall()
+def _wall(folder, tile, names, columns, rows, spp=256):
+    """A wall of glowing tiles by both engines: names of the tiles, how many in a row, their size and the two pictures."""
     scene = bpy.context.scene
-    scene.render.resolution_x, scene.render.resolution_y = columns * node_lab.TILE, rows * node_lab.TILE
+    scene.render.resolution_x, scene.render.resolution_y = columns * tile, rows * tile
     scene.render.resolution_percentage = 100
     cycles = scene.cycles
-    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = spp, False, False
     cycles.pixel_filter_type, cycles.max_bounces = "BOX", 0
-    scene.penumbra.spp, scene.penumbra.max_bounces = 256, 0
+    scene.penumbra.spp, scene.penumbra.max_bounces = spp, 0
     paths = []
     for engine in ("CYCLES", "PENUMBRA"):
         scene.render.engine = engine
         paths.append(os.path.join(folder, f"{engine.lower()}.exr"))
         _render(paths[-1])
-    return [names, columns, node_lab.TILE, paths]
+    return [names, columns, tile, paths]
+
+
+def node_wall(folder):
+    """All function nodes."""
+    import node_lab
+
+    return _wall(folder, node_lab.TILE, *node_lab.wall())
+
+
+def image_wall(folder):
+    """All ways to look images up."""
+    import image_lab
+
+    return _wall(folder, image_lab.TILE, *image_lab.wall(folder), spp=64)

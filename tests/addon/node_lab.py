@@ -200,7 +200,7 @@ def _inputs():
         names = [socket.name for socket in probe.node(kind).outputs if socket.enabled]
         bpy.data.materials.remove(probe.material)
         # Not there, as docs/blender.md says.
-        for name in (name for name in names if name not in {"Random Per Island", "Pointiness"}):
+        for name in (name for name in names if name != "Pointiness"):
             yield f"{kind[10:]} {name}", lambda t, k=kind, n=name: t.node(k).outputs[n]
     for name in ("Fresnel", "Facing"):
         yield f"Layer Weight {name}", lambda t, n=name: t.node(
@@ -208,6 +208,13 @@ def _inputs():
                 "ShaderNodeVectorMath", {0: t.vector, 1: (0.2, 0.2, 1.0)}, operation="ADD").outputs[0]}).outputs[n]
     yield "Fresnel", lambda t: t.node("ShaderNodeFresnel", {"IOR": 1.6, "Normal": t.node(
         "ShaderNodeVectorMath", {0: t.vector, 1: (0.2, 0.2, 1.0)}, operation="ADD").outputs[0]}).outputs[0]
+    # Around the other axes there is none on what is flat.
+    yield "Tangent", lambda t: t.node("ShaderNodeTangent", direction_type="RADIAL", axis="Z").outputs[0]
+    for kind, name in (("OBJECT", "mine"), ("OBJECT", "color"), ("INSTANCER", "mine"), ("VIEW_LAYER", "mine"),
+                       ("OBJECT", "not there")):
+        for output in ("Color", "Vector", "Fac", "Alpha"):
+            yield f"Attribute {kind} {name} {output}", lambda t, k=kind, n=name, o=output: t.node(
+                "ShaderNodeAttribute", attribute_type=k, attribute_name=n).outputs[o]
     yield "UV Map", lambda t: t.node("ShaderNodeUVMap", uv_map="UVMap").outputs[0]
     yield "Color Attribute", lambda t: t.node("ShaderNodeVertexColor", layer_name="Paint").outputs[0]
     yield "Attribute", lambda t: t.node("ShaderNodeAttribute", attribute_name="Paint").outputs["Vector"]
@@ -235,8 +242,10 @@ def wall():
         obj = scenes.add(name, mesh, location=(number % columns + 0.5 - columns / 2, number // columns + 0.5 - rows / 2, 0.0),
                          pass_index=number % 7, color=(0.2, 0.4, 0.7, 1.0))
         obj.rotation_euler = (0.0, 0.0, 0.0)
+        obj["mine"] = (0.3, 0.6, 0.1 * (number % 7))
     camera = bpy.data.cameras.new("Camera")
     camera.type, camera.ortho_scale, camera.sensor_fit = "ORTHO", columns, "HORIZONTAL"
+    bpy.context.scene["mine"] = 0.7
     bpy.context.scene.camera = scenes.add("Camera", camera, location=(0, 0, 5))
     scenes.world(0.0)
     return [name for name, _ in made], columns, rows

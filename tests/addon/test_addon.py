@@ -54,6 +54,9 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
              "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
              "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
+             "relief", "relief_of_world", "relief_of_vectors", "relief_of_tangents", "relief_of_color", "colors_as_shaders",
+             "bright_colors", "light_taken", "gobo_point", "gobo_of_directions", "gobo_spot", "gobo_of_normals", "gobo_area",
+             "lamp_by_distance", "lamp_of_ies", "few_bounces_of_lamps", "islands", "tangents",
              "catcher", "hair", "hair_curves_bent", "particle_fur", "particle_instances"]
 )
 def test_pictures_are_those_of_cycles(blender, tmp_path, name):
@@ -70,6 +73,16 @@ def test_pictures_are_those_of_cycles(blender, tmp_path, name):
         # The noise of the two means: that of differences between pixels, which edges make no smaller.
         noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
         assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise, (name, layer)
+
+
+def test_a_transparent_film_is_seen_through_glass(blender, tmp_path):
+    """The picture and its alpha; in Cycles data passes show what is behind the glass as well."""
+    paths, _ = blender.run("side_by_side", "film_through_glass", tmp_path, 256, 48)
+    expected, found = (np.dstack([read(path)[f"ViewLayer.Combined.{c}"] for c in "RGBA"]) for path in paths)
+    for c in range(4):
+        noise = np.std(found[..., c] - expected[..., c]) / np.sqrt(expected[..., c].size)
+        assert abs(found[..., c].mean() - expected[..., c].mean()) <= 0.002 * expected[..., c].mean() + 4.0 * noise, c
+    assert np.mean(np.abs(found[..., 3] - expected[..., 3]) > 0.1) < 0.02
 
 
 def test_the_sky_of_hosek_and_wilkie_is_that_of_cycles_by_another_fit(blender, tmp_path):
@@ -134,7 +147,7 @@ def test_a_noise_target_ends_a_render(blender, tmp_path):
 def test_what_is_left_out_is_told(blender, tmp_path):
     _, output = blender.run("left_out", tmp_path)
     for words in ("the pass Mist is not rendered", "the pass Shadow Catcher is not rendered",
-                  "displacement is not rendered", 'the attribute "mine" is one of OBJECT'):
+                  "vertices are not displaced yet", "the output Pointiness", "Fast GI Approximation is not used"):
         assert words in output, words
 
 

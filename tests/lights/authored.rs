@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use penumbra::desc::{ColorSpace, ImageDesc, LightKind, PixelData};
+use penumbra::desc::{Blending, ColorSpace, ImageDesc, LightKind, PixelData};
 use penumbra::error::Place;
 use penumbra::light::{AnyEmitter, Emitter};
 use penumbra::math::{Bounds, DAffine3, DMat3, DVec3, Vec3};
@@ -100,6 +100,7 @@ fn image(values: [f32; 4]) -> ImageDesc {
         height: 2,
         channels: 1,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::F32(values.to_vec()),
     }
 }

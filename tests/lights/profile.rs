@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use penumbra::light::{
-    AnyEmitter, Cone, Decay, Emitter, Falloff, Ies, MeshEmitters, MeshLight, Point, Profile, Receiver, RoundEmitters,
-    RoundLight, Shaping, Sphere,
+    AnyEmitter, Cone, Decay, Drawn, Emitter, Falloff, Ies, MeshEmitters, MeshLight, Point, Profile, Receiver,
+    RoundEmitters, RoundLight, Shaping, Sphere,
 };
 use penumbra::math::{Affine3A, DMat3, DVec3, Rgb, Vec3};
 use penumbra::shape::{Mesh, Rounds};
@@ -21,6 +21,11 @@ fn turned() -> DMat3 {
 fn quadrants(scale: f64, keep_power: bool) -> Option<Ies> {
     let candela = [100.0, 80.0, 30.0, 0.0, 90.0, 70.0, 10.0, 0.0, 80.0, 60.0, 50.0, 0.0];
     Ies::new(&[0.0, 30.0, 60.0, 100.0], &[0.0, 45.0, 90.0], &candela, scale, keep_power)
+}
+
+/// A factor that is not the same around any axis.
+fn drawn() -> Option<Drawn> {
+    Some(Drawn::new(|w, _| Rgb::new(0.5 + 0.5 * w.x, 0.2, (1.0 + w.y * w.z) * 0.3)))
 }
 
 fn profiles() -> Vec<(&'static str, Profile)> {
@@ -45,6 +50,8 @@ fn profiles() -> Vec<(&'static str, Profile)> {
         ("measured, power", Shaping { ies: quadrants(0.5, true), ..Shaping::default() }),
         ("measured, from above", Shaping { ies: quadrants(-1.5, true), ..Shaping::default() }),
         ("upward", Shaping { ies: upward, ..Shaping::default() }),
+        ("drawn", Shaping { drawn: drawn(), ..Shaping::default() }),
+        ("drawn, in a cone", Shaping { drawn: drawn(), ..cone(Cone::blend(0.4, 0.2)) }),
         ("all", Shaping { focus: 1.5, ies: quadrants(0.0, false), ..cone(Cone::soft(0.8, 0.5)) }),
     ];
     shapings.map(|(name, shaping)| (name, Profile::new(turned(), shaping, Decay::PHYSICAL))).into()

@@ -63,6 +63,8 @@ def render(scene, size, view_layer):
         "film_transparent": scene.render.film_transparent,
         "pass_alpha_threshold": view_layer.pass_alpha_threshold,
     }
+    if getattr(cycles, "film_transparent_glass", False):
+        result["transparent_glass"] = cycles.film_transparent_roughness
     rectangle = border(scene, size)
     if rectangle is not None:
         result["border"] = rectangle

@@ -17,6 +17,9 @@ def lamp(instance, context):
         "lightgroup": obj.lightgroup,
         "visibility": context.visibility(obj),
     }
+    bounces = getattr(getattr(light, "cycles", None), "max_bounces", None)
+    if bounces is not None:
+        data["max_bounces"] = bounces
     for name in ("exposure", "normalize"):
         if hasattr(light, name):
             data[name] = getattr(light, name)

@@ -1,6 +1,9 @@
 """Meshes as arrays. Nothing here loops over vertices."""
 
 import numpy as np
+from penumbra import Scene
+
+from .nodes import RANDOM_PER_ISLAND
 
 
 def _array(collection, attribute, width, dtype):
@@ -88,6 +91,10 @@ def _attributes(mesh, asked):
         if attribute.domain == "FACE":
             values = np.repeat(values, _array(mesh.polygons, "loop_total", 1, np.int32), axis=0)
         found.append((name, np.ascontiguousarray(values).reshape(-1)))
+    if RANDOM_PER_ISLAND in asked:
+        edges = _array(mesh.edges, "vertices", 2, np.int32)
+        values = Scene.random_per_island(len(mesh.vertices), edges)
+        found.append((RANDOM_PER_ISLAND, np.repeat(values, 4)))
     return found
 
 

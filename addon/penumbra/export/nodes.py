@@ -13,6 +13,10 @@ _COMMON = {
 }
 
 
+# The attribute that stands for Random Per Island.
+RANDOM_PER_ISLAND = "random per island"
+
+
 def dump(tree, context):
     """The tree as dicts and lists; `context` takes in the images that its nodes name."""
     nodes = list(tree.nodes)
@@ -98,6 +102,8 @@ def _properties(node, context):
             data[name] = _curves(value)
         elif kind == "Text":
             data[name] = value.as_string()
+        elif name == "filepath":
+            data[name] = bpy.path.abspath(value, library=node.id_data.library)
         elif kind == "Object":
             data[name] = context.object_matrix(value)
         else:
@@ -129,9 +135,25 @@ def _curves(mapping):
     }
 
 
-def attributes_asked():
-    """Names of the geometry's attributes that some material asks for."""
+def _all_nodes():
+    """Every node of every material and shader group."""
     trees = [material.node_tree for material in bpy.data.materials if material.node_tree is not None]
     trees += [tree for tree in bpy.data.node_groups if tree.type == "SHADER"]
-    asked = (node for tree in trees for node in tree.nodes if node.type == "ATTRIBUTE")
-    return frozenset(node.attribute_name for node in asked if node.attribute_type == "GEOMETRY" and node.attribute_name)
+    return (node for tree in trees for node in tree.nodes)
+
+
+def attributes_asked():
+    """Names of the geometry's attributes that some material asks for; RANDOM_PER_ISLAND stands for those numbers."""
+    asked = set()
+    for node in _all_nodes():
+        if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
+            asked.add(node.attribute_name)
+        elif node.type == "NEW_GEOMETRY" and node.outputs["Random Per Island"].is_linked:
+            asked.add(RANDOM_PER_ISLAND)
+    return frozenset(asked)
+
+
+def properties_asked():
+    """Type and name of what materials ask of objects, instancers and the view layer."""
+    asked = (node for node in _all_nodes() if node.type == "ATTRIBUTE" and node.attribute_type != "GEOMETRY")
+    return sorted({(node.attribute_type, node.attribute_name) for node in asked if node.attribute_name})

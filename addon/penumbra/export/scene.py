@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from .. import passes
-from . import camera, images, lights, mesh, nodes, particles, rounds
+from . import camera, images, lights, mesh, nodes, particles, properties, rounds
 from .motion import identity_of
 
 # Types of objects that evaluate to a mesh.
@@ -74,6 +74,9 @@ class Exporter:
         override = self._layer.material_override
         self._override = override and override.evaluated_get(depsgraph)
         self._asked = nodes.attributes_asked()
+        self._properties = nodes.properties_asked()
+        self._by_instancer = any(kind == "INSTANCER" for kind, _ in self._properties)
+        self._scene = depsgraph.scene_eval
         self._render = depsgraph.mode == "RENDER"
         self._materials, self._material_index = [], {}
         self._objects, self._object_index = [], {}
@@ -94,9 +97,10 @@ class Exporter:
                 if motion is not None:
                     lamps[identity_of(instance)] = self._lights[-1]
             elif instance.show_self and self._is_rendered(obj):
-                found += self._object(obj)
+                found += self._object(obj, instance.parent if instance.is_instance else None)
             if self._layer.use_strand and instance.show_particles and obj.type == "MESH" and obj.particle_systems:
-                found += self._strands(instance.instance_object if instance.is_instance else obj)
+                found += self._strands(instance.instance_object if instance.is_instance else obj,
+                                       instance.parent if instance.is_instance else None)
             matrix = [x for row in instance.matrix_world for x in row] if found else None
             if motion is not None:
                 first, shapes = len(of_instance), [self._objects[index]["mesh"] for index in found]
@@ -158,22 +162,26 @@ class Exporter:
             self.warnings.append("some properties are not finite numbers; 0 is used for them")
             return json.dumps(_finite(document))
 
-    def _object(self, obj):
+    def _instancer(self, parent):
+        """What tells apart the records of one object: what instances it, where materials ask for that."""
+        return parent.name_full if self._by_instancer and parent is not None else None
+
+    def _object(self, obj, parent):
         """Index of the object's record; nothing for one without a shape."""
         # Not by the object's address: curves, texts and metaballs come as meshes of one passing object.
-        key = (obj.name_full, obj.data.as_pointer())
+        key = (obj.name_full, obj.data.as_pointer(), self._instancer(parent))
         if key in self._object_index:
             return self._object_index[key]
         shape = self._shape(obj)
         found = []
         if shape is not None:
-            found.append(self._record(obj, shape, [slot.material for slot in obj.material_slots]))
+            found.append(self._record(obj, shape, [slot.material for slot in obj.material_slots], parent))
         self._object_index[key] = found
         return found
 
-    def _strands(self, obj):
+    def _strands(self, obj, parent):
         """Indices of the records of an object's hair, one for each particle system that has some."""
-        key = (obj.name_full, "hair")
+        key = (obj.name_full, "hair", self._instancer(parent))
         if key not in self._object_index:
             found = self._object_index[key] = []
             for modifier, slot in particles.systems(obj, self._render):
@@ -183,7 +191,7 @@ class Exporter:
                     slots = obj.material_slots
                     # A slot that is not there is the last one.
                     material = slots[min(max(slot, 0), len(slots) - 1)].material if slots else None
-                    found.append(self._record(obj, shape, [material]))
+                    found.append(self._record(obj, shape, [material], parent))
         return self._object_index[key]
 
     def _hair_of(self, obj, modifier):
@@ -198,8 +206,8 @@ class Exporter:
             self._hair.setdefault(obj.name_full, set()).add(key)
         return key
 
-    def _record(self, obj, shape, materials):
-        """Says of an object with one of its shapes what it is; returns the record's index."""
+    def _record(self, obj, shape, materials, parent):
+        """Says of an object with one of its shapes, instanced by `parent` or not, what it is; returns the record's index."""
         if self._override is not None:
             materials = [self._override] * max(len(materials), 1)
         top = obj
@@ -217,6 +225,7 @@ class Exporter:
             "shadow_catcher": obj.is_shadow_catcher,
             "terminator": _terminator(obj),
             "lightgroup": obj.lightgroup,
+            "attributes": properties.values(self._properties, obj, parent, self._layer, self._scene),
         })
         self._links.append((self._objects[-1], obj))
         return len(self._objects) - 1
@@ -262,6 +271,7 @@ class Exporter:
             "name": material.name,
             "pass_index": material.pass_index,
             "diffuse_color": list(material.diffuse_color),
+            "displacement_method": _displacement(material),
             "bump_correction": getattr(getattr(material, "cycles", None), "use_bump_map_correction", True),
         }
         self._moves = False
@@ -327,6 +337,11 @@ class Exporter:
         """World matrix of an object that a node refers to."""
         self._moves = True
         return [list(map(float, row)) for row in obj.matrix_world]
+
+
+def _displacement(material):
+    """What becomes of a material's displacement: its own property since 4.1, and Cycles' own in some builds."""
+    return getattr(material, "displacement_method", None) or material.cycles.displacement_method
 
 
 def _key(data, asked):

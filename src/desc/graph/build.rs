@@ -114,9 +114,10 @@ impl Graph {
         sum.unwrap_or(zero)
     }
 
-    /// Where a ray towards whoever looks would be mirrored to: Blender's reflection coordinates, world space.
-    pub fn reflection(&mut self) -> ValueId {
-        let (incoming, normal) = (self.leaf(Leaf::Incoming), self.leaf(Leaf::Normal));
+    /// Where a ray towards whoever looks would be mirrored to by a surface of this normal: Blender's reflection
+    /// coordinates, world space.
+    pub fn reflection(&mut self, normal: ValueId) -> ValueId {
+        let incoming = self.leaf(Leaf::Incoming);
         let mirrored = self.apply(Function::Reflect, &[incoming, normal]);
         self.scale(mirrored, -1.0)
     }

@@ -24,7 +24,7 @@ mod op;
 mod replace;
 mod sky;
 
-pub use function::{Blend, Curves, Function, Mapping, Math, Ramp, RampKind, Range, Table};
+pub use function::{Blend, Curves, Function, IesTable, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
 pub use op::{
     Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Relief, Scatter, Space, Voronoi,

@@ -137,6 +137,7 @@ impl Curve {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::desc::Blending;
     use crate::error::Place;
 
     fn image(channels: u8, bytes: &[u8]) -> ImageDesc {
@@ -147,6 +148,7 @@ mod tests {
             height: 1,
             channels,
             color_space: ColorSpace::Linear,
+            blending: Blending::default(),
             pixels: PixelData::U8(bytes.to_vec()),
         }
     }

@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::blending::{self, AlphaUse, Reading};
 use super::colors::Space;
 use super::document::ImageData;
-use super::kept::{KeptImages, Version};
-use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
+use super::kept::{KeptImages, Version, Wanted};
+use crate::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::image::{decode_image, load_image};
 
@@ -47,6 +48,8 @@ pub struct Look {
     pub wrap: Wrap,
     /// Interpolation.
     pub filter: Filter,
+    /// What is made of the alpha.
+    pub alpha: AlphaUse,
 }
 
 /// The images that nodes ask for; they are decoded by [`Images::finish`].
@@ -55,8 +58,8 @@ pub struct Images<'a> {
     in_memory: &'a HashMap<String, InMemory>,
     place: &'a Place,
     version: [u32; 3],
-    /// Name and tile of each image asked for.
-    wanted: Vec<(String, Option<u32>)>,
+    /// Each image asked for.
+    wanted: Vec<Wanted>,
     textures: Vec<TextureDesc>,
 }
 
@@ -81,20 +84,17 @@ impl<'a> Images<'a> {
         self.data.get(name)
     }
 
-    /// Index of the image, or of one tile of it; `None` where there is none of this name.
-    pub fn image(&mut self, name: &str, tile: Option<u32>) -> Option<u32> {
-        self.data.get(name)?;
-        let known = self.wanted.iter().position(|(known, of)| known == name && *of == tile);
-        Some(known.unwrap_or_else(|| {
-            self.wanted.push((name.to_owned(), tile));
-            self.wanted.len() - 1
-        }) as u32)
-    }
-
-    /// Index of a way to look the image up.
+    /// Index of a way to look the image up, or one tile of it; `None` where there is no image of this name.
     pub fn texture(&mut self, name: &str, tile: Option<u32>, look: Look) -> Option<u32> {
-        let image = self.image(name, tile)?;
-        let Look { wrap, filter } = look;
+        self.data.get(name)?;
+        let Look { wrap, filter, alpha } = look;
+        let reading = Reading { alpha, cubic: filter == Filter::Cubic };
+        let wanted = Wanted { name: name.to_owned(), tile, reading };
+        let known = self.wanted.iter().position(|known| *known == wanted);
+        let image = known.unwrap_or_else(|| {
+            self.wanted.push(wanted);
+            self.wanted.len() - 1
+        }) as u32;
         let texture = TextureDesc { place: self.place.at(name), image, wrap_u: wrap, wrap_v: wrap, filter };
         let known = self.textures.iter().position(|known| *known == texture);
         Some(known.unwrap_or_else(|| {
@@ -110,13 +110,13 @@ impl<'a> Images<'a> {
 
     /// All images and textures that were asked for, those of `kept` as they are there. One that can't be
     /// read is told, and is magenta as in Cycles.
-    pub fn finish(self, kept: &mut KeptImages, warnings: &mut Warnings) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
-        let decode = |key: &(String, Option<u32>)| {
-            let version = self.version_of(&key.0, key.1);
-            if let Some(known) = version.as_ref().and_then(|version| kept.get(key, version)) {
+    pub fn finish(mut self, kept: &mut KeptImages, warnings: &mut Warnings) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
+        let decode = |wanted: &Wanted| {
+            let version = self.version_of(&wanted.name, wanted.tile);
+            if let Some(known) = version.as_ref().and_then(|version| kept.get(wanted, version)) {
                 return (version, Ok(known));
             }
-            (version, self.decode(&key.0, key.1).map(Arc::new))
+            (version, self.decode(wanted).map(Arc::new))
         };
         let decoded: Vec<(Option<Version>, Result<Arc<ImageDesc>>)> = self.wanted.par_iter().map(decode).collect();
         let good = self.wanted.iter().zip(&decoded).filter_map(|(key, (version, image))| {
@@ -124,10 +124,10 @@ impl<'a> Images<'a> {
             Some((key.clone(), version.clone(), image.clone()))
         });
         kept.replace(good);
-        let images = decoded
+        let images: Vec<Arc<ImageDesc>> = decoded
             .into_iter()
             .zip(&self.wanted)
-            .map(|((_, image), (name, _))| {
+            .map(|((_, image), Wanted { name, .. })| {
                 image.unwrap_or_else(|error| {
                     warnings.push(&self.place.at(name), format!("{error}: magenta stands for it"));
                     magenta(name, self.place).into()
@@ -135,13 +135,24 @@ impl<'a> Images<'a> {
             })
             .collect();
         self.tell_spaces(warnings);
+        self.share(&images);
         (images, self.textures)
+    }
+
+    /// Lets textures look up the same image where two readings of one turned out to be alike.
+    fn share(&mut self, images: &[Arc<ImageDesc>]) {
+        let first = |i: usize| {
+            let of = |i: usize| (&self.wanted[i].name, self.wanted[i].tile);
+            (0..i).find(|&j| of(i) == of(j) && blending::same(&images[i], &images[j])).unwrap_or(i) as u32
+        };
+        let firsts: Vec<u32> = (0..images.len()).map(first).collect();
+        self.textures.iter_mut().for_each(|texture| texture.image = firsts[texture.image as usize]);
     }
 
     /// Tells the images whose colour space is not known, each once however many tiles it has.
     fn tell_spaces(&self, warnings: &mut Warnings) {
         let unknown = |name: &&String| Space::named(&self.data[*name].colorspace).is_none();
-        let names: BTreeSet<&String> = self.wanted.iter().map(|(name, _)| name).filter(unknown).collect();
+        let names: BTreeSet<&String> = self.wanted.iter().map(|wanted| &wanted.name).filter(unknown).collect();
         for name in names {
             let space = &self.data[name].colorspace;
             let what = format!("the image's colour space \"{space}\" is not supported; sRGB is taken for it");
@@ -160,38 +171,57 @@ impl<'a> Images<'a> {
         Version::of_file(&path_of(data, tile), space)
     }
 
-    fn decode(&self, name: &str, tile: Option<u32>) -> Result<ImageDesc> {
+    fn decode(&self, Wanted { name, tile, reading }: &Wanted) -> Result<ImageDesc> {
         let data = &self.data[name];
-        let space = space(data);
+        let mut space = space(data);
         let place = self.place.at(name);
-        let name: Arc<str> = name.into();
-        if !data.in_memory {
-            let path = path_of(data, tile);
-            if path.is_empty() {
-                return Err(Error::invalid(&place, "the image has neither a file nor pixels"));
+        let name: Arc<str> = name.as_str().into();
+        let image = match self.in_memory.get(&*name).map(|image| &image.source) {
+            _ if !data.in_memory => {
+                let path = path_of(data, *tile);
+                if path.is_empty() {
+                    return Err(Error::invalid(&place, "the image has neither a file nor pixels"));
+                }
+                load_image(Path::new(&path), space.stored())?
             }
-            return load_image(Path::new(&path), space.stored()).map(|image| space.applied(image));
-        }
-        match self.in_memory.get(&*name).map(|image| &image.source) {
-            None => Err(Error::invalid(&place, "the image's pixels were not handed over")),
+            None => return Err(Error::invalid(&place, "the image's pixels were not handed over")),
             Some(ImageSource::Encoded(bytes)) => {
                 let hint = Path::new(&data.path).extension().and_then(|extension| extension.to_str());
-                decode_image(bytes, hint, &name, &place, space.stored()).map(|image| space.applied(image))
+                decode_image(bytes, hint, &name, &place, space.stored())?
             }
             Some(ImageSource::Pixels { width, height, values, linear }) => {
-                let (row, rows) = (*width as usize * 4, *height as usize);
-                if row == 0 || values.len() != row * rows || values.is_empty() {
-                    let what = format!("{} numbers for {width}x{height} pixels", values.len());
-                    return Err(Error::invalid(&place, what));
+                if *linear {
+                    space = Space::Stored(ColorSpace::Linear);
                 }
-                let pixels = PixelData::F32(values.chunks_exact(row).rev().flatten().copied().collect());
-                let space = if *linear { Space::Stored(ColorSpace::Linear) } else { space };
-                let color_space = space.stored();
-                let (width, height) = (*width, *height);
-                Ok(space.applied(ImageDesc { name, place, width, height, channels: 4, color_space, pixels }))
+                of_pixels([*width, *height], values, *linear, space.stored(), &name, &place)?
             }
-        }
+        };
+        let straight = matches!(image.pixels, PixelData::U8(_) | PixelData::U16(_));
+        Ok(reading.applied(space.applied(image), straight))
     }
+}
+
+/// The image of Blender's pixels, which are floats that stand for bytes unless they are `linear`.
+fn of_pixels(
+    [width, height]: [u32; 2],
+    values: &[f32],
+    linear: bool,
+    color_space: ColorSpace,
+    name: &Arc<str>,
+    place: &Place,
+) -> Result<ImageDesc> {
+    let (row, rows) = (width as usize * 4, height as usize);
+    if row == 0 || values.len() != row * rows || values.is_empty() {
+        let what = format!("{} numbers for {width}x{height} pixels", values.len());
+        return Err(Error::invalid(place, what));
+    }
+    let upside_down = values.chunks_exact(row).rev().flatten().copied();
+    let pixels = match linear {
+        true => PixelData::F32(upside_down.collect()),
+        false => PixelData::U8(upside_down.map(|value| (value * 255.0).round() as u8).collect()),
+    };
+    let (name, place, blending) = (name.clone(), place.clone(), Blending::default());
+    Ok(ImageDesc { name, place, width, height, channels: 4, color_space, blending, pixels })
 }
 
 /// Path of the image, or of one tile of it.
@@ -212,6 +242,7 @@ fn magenta(name: &str, place: &Place) -> ImageDesc {
         height: 1,
         channels: 3,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::U8(vec![255, 0, 255]),
     }
 }
@@ -221,7 +252,7 @@ mod tests {
     use super::*;
 
     fn look() -> Look {
-        Look { wrap: Wrap::Repeat, filter: Filter::Linear }
+        Look { wrap: Wrap::Repeat, filter: Filter::Linear, alpha: AlphaUse::Apart }
     }
 
     #[test]
@@ -258,7 +289,7 @@ mod tests {
             [("wood".to_owned(), ImageData { path: "/no/wood.png".into(), ..ImageData::default() })].into();
         let (in_memory, place) = (HashMap::new(), Place::default());
         let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
-        images.image("wood", None);
+        images.texture("wood", None, look());
         let mut warnings = Warnings::new();
         images.finish(&mut KeptImages::default(), &mut warnings);
         assert!(warnings.iter().next().unwrap().what.contains("/no/wood.png"));
@@ -277,8 +308,8 @@ mod tests {
         let mut read = |colorspace: &str| {
             let data = of(colorspace);
             let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
-            images.image("a", None);
-            images.image("a", Some(1002));
+            images.texture("a", None, look());
+            images.texture("a", Some(1002), look());
             let mut warnings = Warnings::new();
             let image = images.finish(&mut kept, &mut warnings).0.remove(0);
             (image, warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
@@ -303,7 +334,7 @@ mod tests {
         let mut read = |value: f32, revision: u64| {
             let in_memory = [("a".to_owned(), InMemory { source: source(value), revision })].into();
             let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
-            images.image("a", None);
+            images.texture("a", None, look());
             images.finish(&mut kept, &mut Warnings::new()).0.remove(0)
         };
         let first = read(0.25, 0);

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
+use super::blending::Reading;
 use super::colors::Space;
 use crate::desc::ImageDesc;
 
@@ -25,14 +26,22 @@ impl Version {
     }
 }
 
-/// Name and tile of an image.
-type Key = (String, Option<u32>);
+/// An image that is asked for.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Wanted {
+    /// Its name.
+    pub name: String,
+    /// The tile of it.
+    pub tile: Option<u32>,
+    /// How it is made ready.
+    pub reading: Reading,
+}
 
 /// Decoded images; none where nothing is kept, so that a single render holds no texel twice.
 #[derive(Debug, Default)]
 pub struct KeptImages {
     on: bool,
-    images: HashMap<Key, (Version, Arc<ImageDesc>)>,
+    images: HashMap<Wanted, (Version, Arc<ImageDesc>)>,
 }
 
 impl KeptImages {
@@ -42,12 +51,12 @@ impl KeptImages {
     }
 
     /// The image, if it was decoded in this very version.
-    pub fn get(&self, key: &Key, version: &Version) -> Option<Arc<ImageDesc>> {
+    pub fn get(&self, key: &Wanted, version: &Version) -> Option<Arc<ImageDesc>> {
         self.images.get(key).filter(|(known, _)| known == version).map(|(_, image)| image.clone())
     }
 
     /// Keeps these images and forgets all others.
-    pub fn replace(&mut self, images: impl Iterator<Item = (Key, Version, Arc<ImageDesc>)>) {
+    pub fn replace(&mut self, images: impl Iterator<Item = (Wanted, Version, Arc<ImageDesc>)>) {
         if self.on {
             self.images = images.map(|(key, version, image)| (key, (version, image))).collect();
         }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::document::{LightData, LinkData, ObjectData};
 use super::transform::affine;
-use crate::desc::{ConeDesc, DecayDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc};
+use crate::desc::{ConeDesc, DecayDesc, LampShaderDesc, LightDesc, LightKind, LightLinks, LinkSet, ShapingDesc};
 use crate::error::{Place, Warnings};
 use crate::math::DVec3;
 
@@ -19,13 +19,15 @@ use crate::math::DVec3;
 pub struct LampShader {
     /// Colour times strength.
     pub factor: [f64; 3],
+    /// What that is to be multiplied by, where it varies over the lamp.
+    pub varying: Option<LampShaderDesc>,
     /// Of a Light Falloff node.
     pub decay: DecayDesc,
 }
 
 impl Default for LampShader {
     fn default() -> Self {
-        Self { factor: [1.0; 3], decay: DecayDesc::default() }
+        Self { factor: [1.0; 3], varying: None, decay: DecayDesc::default() }
     }
 }
 
@@ -34,6 +36,8 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
     let place = place.at(&data.name);
     let scale = data.energy * data.exposure.exp2();
     let power: [f64; 3] = std::array::from_fn(|i| scale * data.color[i] * data.temperature_color[i] * shader.factor[i]);
+    let takes = power.iter().all(|&c| c <= 0.0) && power != [0.0; 3];
+    let power = if takes { power.map(f64::abs) } else { power };
     let times = |factor: f64| power.map(|c| c * factor);
     let mut transform = affine(&data.matrix);
     let kind = match data.r#type.as_str() {
@@ -78,7 +82,12 @@ pub fn light(data: &LightData, shader: &LampShader, place: &Place, warnings: &mu
         shaping: ShapingDesc { cone, ..ShapingDesc::default() },
         decay: shader.decay,
         visibility: data.visibility.into(),
-        links: LightLinks { cast_shadow: data.use_shadow, ..LightLinks::default() },
+        links: LightLinks {
+            cast_shadow: data.use_shadow,
+            max_bounces: data.max_bounces,
+            takes,
+            ..LightLinks::default()
+        },
     })
 }
 

@@ -48,10 +48,11 @@ fn material(
         place: place.at(&data.name),
         material_index: data.pass_index,
         bump_correction: data.bump_correction,
+        unbounded: true,
         ..MaterialDesc::default()
     };
     match &data.nodes {
-        Some(tree) => nodes::surface(tree, base, images, uv_sets, warnings),
+        Some(tree) => nodes::surface(tree, base, images, uv_sets, &data.displacement_method, warnings),
         None => {
             let [r, g, b, _] = data.diffuse_color;
             let plain = ScalarInput::constant;

@@ -5,10 +5,12 @@
 //! is decided here, where it is tested without Blender. The world stays Blender's, z up, so that the
 //! passes in world space hold the numbers that the artist sees.
 
+mod blending;
 mod camera;
 mod colors;
 mod document;
 mod image;
+mod islands;
 mod kept;
 mod layers;
 mod light;
@@ -30,6 +32,7 @@ pub use document::{
     VisibilityData, WorldData,
 };
 pub use image::ImageSource;
+pub use islands::random_per_island;
 pub use mesh::{LayerArray, MeshArrays};
 pub use motion::MovedPoints;
 pub use nodes::{NodeData, SocketData, TreeData, Value};

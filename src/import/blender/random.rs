@@ -11,10 +11,24 @@ pub fn of_name(name: &str) -> f64 {
     of_id(mixed(hash, 0))
 }
 
+/// Of a number, 0 to 1.
+pub fn of_number(x: u32) -> f32 {
+    let start = start_of(1);
+    jenkins(start.wrapping_add(x), start, start) as f32 / u32::MAX as f32
+}
+
 /// Bob Jenkins' lookup3 of two words, <https://burtleburtle.net/bob/c/lookup3.c>.
 fn mixed(x: u32, y: u32) -> u32 {
-    let start = 0xdead_beef_u32.wrapping_add(2 << 2).wrapping_add(13);
-    let (mut a, mut b, mut c) = (start.wrapping_add(x), start.wrapping_add(y), start);
+    let start = start_of(2);
+    jenkins(start.wrapping_add(x), start.wrapping_add(y), start)
+}
+
+/// What lookup3 begins with for so many words.
+fn start_of(words: u32) -> u32 {
+    0xdead_beef_u32.wrapping_add(words << 2).wrapping_add(13)
+}
+
+fn jenkins(mut a: u32, mut b: u32, mut c: u32) -> u32 {
     let step = |to: u32, from: u32, by: u32| (to ^ from).wrapping_sub(from.rotate_left(by));
     c = step(c, b, 14);
     a = step(a, c, 11);

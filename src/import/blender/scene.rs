@@ -283,7 +283,7 @@ impl BlenderScene {
                 info: ObjectInfo {
                     color: data.color,
                     random: if random == 0 { random::of_name(&data.name) } else { random::of_id(random) },
-                    attributes: Vec::new(),
+                    attributes: data.attributes.iter().map(|(name, value)| (name.as_str().into(), *value)).collect(),
                 },
             });
         }
@@ -317,7 +317,12 @@ impl BlenderScene {
             };
             let Some(mut light) = light::light(data, &shader, &desc.place, warnings) else { continue };
             let own = light::links(&data.lightgroup, data.receivers.as_ref(), data.blockers.as_ref(), of_object);
-            light.links = LightLinks { cast_shadow: light.links.cast_shadow, ..own };
+            if let Some(varying) = shader.varying {
+                light.shaping.shader = Some(desc.lamp_shaders.len() as u32);
+                desc.lamp_shaders.push(varying);
+            }
+            let LightLinks { cast_shadow, max_bounces, takes, .. } = light.links;
+            light.links = LightLinks { cast_shadow, max_bounces, takes, ..own };
             desc.lights.push(light);
         }
         if let Some(world) = &document.world {

@@ -154,6 +154,10 @@ impl Stamp {
             Some(tree) => nodes::lamp(tree, images, own, warnings),
             None => LampShader::default(),
         });
+        if shader.varying.is_some() {
+            let what = "the lamp's nodes vary over it, which files of other formats do not keep; they count as 1";
+            warnings.push(&place.at(&lamp.name), what);
+        }
         let mut light = light::light(&lamp, &shader, place, warnings)?;
         light.decay.smooth *= scale * scale;
         light.links.group = (!lamp.lightgroup.is_empty()).then(|| lamp.lightgroup.as_str().into());

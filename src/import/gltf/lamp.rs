@@ -67,6 +67,7 @@ pub(super) fn read(mut fields: Fields<'_>) -> Option<Lamp> {
             focus: fields.number("focus").unwrap_or(0.0),
             focus_tint: fields.color("focus_tint").unwrap_or_default(),
             ies: None,
+            shader: None,
         };
         let (angle_scale, keep_power) = (fields.number("ies_angle_scale"), fields.flag("ies_keep_power"));
         lamp.ies = source(&mut fields, "ies").map(|source| IesUse {

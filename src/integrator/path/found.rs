@@ -35,6 +35,10 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sampl
 
 /// What lies behind everything.
 pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelSample) {
+    if path.sees_film && path.scatterings > 0 {
+        sample.alpha = (sample.alpha - path.beta.mean()).max(0.0);
+        return;
+    }
     if path.scatterings == 0 && scene.background_visible {
         sample.alpha = path.alpha;
     } else if path.scatterings == 0 && path.left != Rgb::WHITE {
@@ -87,7 +91,8 @@ impl Path<'_> {
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
     /// weight. Lights with shadow rules of their own are counted where the ray begins.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
-        if !rules.stops_like_rays() || !rules.lights(last.from.class) {
+        let bounced_too_often = self.scatterings > rules.max_bounces.saturating_add(1);
+        if bounced_too_often || !rules.stops_like_rays() || !rules.lights(last.from.class) {
             return;
         }
         let l = seen(last.shares, rules) * (self.beta * le);

@@ -40,6 +40,9 @@ fn add_light(
     sample: &mut PixelSample,
 ) {
     let Some(light) = shading.sample_light(scene, sampler, samples) else { return };
+    if path.scatterings > light.rules.max_bounces {
+        return;
+    }
     let unoccluded = light.unoccluded * (path.beta * (1.0 / samples));
     let arrives = unoccluded * light.visibility;
     let dimmed = |l: ByLobe| l * path.limits.factor(l.sum(), path.scatterings + 1);

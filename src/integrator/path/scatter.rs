@@ -42,6 +42,10 @@ pub(super) fn scatter(
         path.cone.spread = path.cone.spread.max(SCATTERED_SPREAD / scattered.pdf.sqrt());
     }
     path.state = path.state.scattered(kind_of(scattered.lobe), scattered.delta);
+    if path.sees_film {
+        path.sees_film = scattered.lobe == Lobe::Transmission
+            && scene.transparent_glass.is_some_and(|widest| shading.bsdf.passage_width() <= widest);
+    }
     let last = Scattering {
         from: shading.receiver(scene),
         pdf: if scattered.delta { f32::INFINITY } else { scattered.pdf },
@@ -67,7 +71,7 @@ pub(super) fn scatter(
                 let l = weight * (beta * found.le);
                 sample.unshadowed += l.diffuse * path.limits.factor(l.sum(), 1);
             }
-            if !found.rules.stops_like_rays() {
+            if !found.rules.stops_like_rays() && path.scatterings <= found.rules.max_bounces.saturating_add(1) {
                 let l = weight
                     * (beta * found.le * found.visibility(scene, &path.ray, &path.media, path.state.transparent));
                 let l = l * path.limits.factor(l.sum(), path.scatterings);

@@ -131,14 +131,15 @@ fn address<T>(of: &Arc<T>) -> usize {
 mod tests {
     use super::*;
     use crate::desc::graph::{Graph, Op};
-    use crate::desc::{ColorSpace, Filter, PixelData, Wrap};
+    use crate::desc::{Blending, ColorSpace, Filter, PixelData, Wrap};
     use crate::error::Place;
     use crate::math::{DVec3, Rgb};
 
     fn image() -> Arc<ImageDesc> {
         let pixels = PixelData::U8(vec![10, 20, 30]);
         let (name, place) = ("sky".into(), Place::default());
-        ImageDesc { name, place, width: 1, height: 1, channels: 3, color_space: ColorSpace::Linear, pixels }.into()
+        let (color_space, blending) = (ColorSpace::Linear, Blending::default());
+        ImageDesc { name, place, width: 1, height: 1, channels: 3, color_space, blending, pixels }.into()
     }
 
     fn parts(image: &Arc<ImageDesc>, strength: f64, x: f64) -> DomeParts {

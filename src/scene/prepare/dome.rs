@@ -103,7 +103,7 @@ fn map(radiance: &DomeRadiance, width: usize, height: usize, orientation: Mat3) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::desc::{ColorSpace, ImageDesc, LightDesc, LightKind, PixelData};
+    use crate::desc::{Blending, ColorSpace, ImageDesc, LightDesc, LightKind, PixelData};
     use crate::error::{Place, Warnings};
     use crate::light::{Emitter, Receiver};
     use crate::math::{DAffine3, Vec3};
@@ -117,6 +117,7 @@ mod tests {
             height: 2,
             channels: 1,
             color_space: ColorSpace::Linear,
+            blending: Blending::default(),
             pixels: PixelData::F32(pixels.to_vec()),
         };
         let desc = SceneDesc { images: vec![image.into()], ..SceneDesc::default() };

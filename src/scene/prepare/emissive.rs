@@ -51,6 +51,8 @@ pub struct Shared<'a> {
     pub materials: &'a [Material],
     /// What domes emit that have a graph.
     pub domes: &'a [Program],
+    /// What lamps emit that have a graph.
+    pub lamps: &'a [Program],
     /// Textures of all of them.
     pub textures: &'a Arc<Vec<Texture>>,
     /// What graphs ask of meshes and objects.
@@ -66,6 +68,8 @@ pub struct Shared<'a> {
 struct Slot {
     factor: Rgb,
     texture: Option<TextureRef>,
+    /// Radiance may be below 0.
+    unbounded: bool,
     opacity: Opacity,
     alpha: f32,
     /// Times this channel.
@@ -128,7 +132,8 @@ impl MaterialEmission {
         if let Some([r, g, b, _]) =
             slot.emission_program().and_then(|program| self.value(program, triangle, barycentrics, wo, time))
         {
-            return (factor * rgb_of([r, g, b])).map(|c| c.max(0.0));
+            let radiance = factor * rgb_of([r, g, b]);
+            return if slot.unbounded { radiance } else { radiance.map(|c| c.max(0.0)) };
         }
         let Some(input) = texture else { return factor };
         let [r, g, b, _] = self.look_up(input, triangle, barycentrics, share);
@@ -178,7 +183,7 @@ impl Emission for MaterialEmission {
         let slot = self.slot(triangle);
         let &Slot { opacity, least, .. } = slot;
         if self.is_constant(triangle) {
-            return self.radiance(triangle, [third, third]);
+            return self.radiance(triangle, [third, third]).map(f32::abs);
         }
         if slot.asks_path() {
             return Rgb::BLACK;
@@ -186,9 +191,11 @@ impl Emission for MaterialEmission {
         if least.is_black() {
             return least;
         }
+        // What takes light away counts as much as what gives it.
+        let emitted = |uv: [f32; 2], share: f32, wo: Vec3| self.emitted(triangle, uv, share, wo, 0.5).map(f32::abs);
         let seen = |uv: [f32; 2], share: f32, wo: Vec3| match opacity {
-            Opacity::Opaque => self.emitted(triangle, uv, share, wo, 0.5),
-            _ => self.emitted(triangle, uv, share, wo, 0.5) * self.alpha(triangle, uv, share, wo, 0.5).clamp(0.0, 1.0),
+            Opacity::Opaque => emitted(uv, share, wo),
+            _ => emitted(uv, share, wo) * self.alpha(triangle, uv, share, wo, 0.5).clamp(0.0, 1.0),
         };
         let n = self.normal(triangle);
         let at = |uv: [f32; 2], share: f32| match slot.asks_view() {
@@ -277,10 +284,11 @@ fn slot(material: &Material, textures: &[Texture]) -> Slot {
     Slot {
         factor,
         texture: emission.map(|(input, _)| input),
+        unbounded: material.unbounded,
         opacity: material.opacity,
         alpha: material.alpha.factor,
         alpha_texture,
-        least: factor * whole * OF_TEXTURE,
+        least: (factor * whole * OF_TEXTURE).map(f32::abs),
         programs: material.programs.as_ref().filter(|_| material.emits()).filter(asked).cloned(),
     }
 }

@@ -3,12 +3,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::lamp_shader::LampShader;
 use super::mend::Mended;
 use super::texels::texels;
 use crate::desc::{ColorSpace, Filter, ImageDesc, LightDesc, LightKind, PixelData, SceneDesc, TextureDesc, Wrap};
 use crate::error::Warnings;
 use crate::light::{AnyEmitter, Disk, Emission, Flat, Rect, Spread};
-use crate::math::Rgb;
+use crate::math::{DVec2, Rgb};
 use crate::texture::{Image, Texture};
 
 /// Radiance of a rectangle by its image.
@@ -32,7 +33,15 @@ impl Emission for Picture {
 
 /// The emitter of `light`, a rectangle or an ellipse, of which `flat` tells all but spread, sides and
 /// size; `None` where it emits nothing.
-pub fn prepare(desc: &SceneDesc, light: &LightDesc, flat: Flat, mended: &mut Mended) -> Option<AnyEmitter> {
+///
+/// What its `shader` varies over a rectangle becomes an image of it.
+pub fn prepare(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    flat: Flat,
+    shader: Option<&LampShader>,
+    mended: &mut Mended,
+) -> Option<AnyEmitter> {
     let (LightKind::Rect { width, height, spread, two_sided, .. }
     | LightKind::Disk { width, height, spread, two_sided, .. }) = light.kind
     else {
@@ -41,9 +50,18 @@ pub fn prepare(desc: &SceneDesc, light: &LightDesc, flat: Flat, mended: &mut Men
     let half = [half_size("width", width, mended), half_size("height", height, mended)];
     let [Some(x), Some(y)] = half else { return None };
     let flat = Flat { spread: cone(spread, mended), two_sided, ..flat };
-    let LightKind::Rect { image, .. } = light.kind else { return Some(Disk::new(flat, [x, y]).into()) };
-    let Some(image) = image else { return Some(Rect::new(flat, [x, y]).into()) };
-    let picture = picture(&desc.images[image as usize], flat.radiance, mended)?;
+    let drawn = shader.filter(|shader| shader.by_place()).map(|shader| shader.picture(light, 2.0 * DVec2::new(x, y)));
+    let LightKind::Rect { image, .. } = light.kind else {
+        let Some(drawn) = drawn else { return Some(Disk::new(flat, [x, y]).into()) };
+        mended.note("its nodes vary over it, which round areas do not: their mean over the square around it is taken");
+        let radiance = picture(&drawn, flat.radiance, mended)?.mean;
+        return Some(Disk::new(Flat { radiance, ..flat }, [x, y]).into());
+    };
+    let picture = match (&drawn, image) {
+        (Some(drawn), _) => picture(drawn, flat.radiance, mended)?,
+        (None, Some(image)) => picture(&desc.images[image as usize], flat.radiance, mended)?,
+        (None, None) => return Some(Rect::new(flat, [x, y]).into()),
+    };
     // The same all over: no need to ask.
     let constant = picture.texture.constant().is_some();
     let rect = Rect::new(Flat { radiance: picture.mean, ..flat }, [x, y]);

@@ -2,22 +2,36 @@
 
 use std::f64::consts::PI;
 
+use super::lamp_shader::LampShader;
 use super::mend::Mended;
 use super::{dome, flat, shaping};
 use crate::desc::{LightDesc, LightKind, SceneDesc};
 use crate::error::Warnings;
 use crate::light::{AnyEmitter, Cylinder, Distant, Flat, Point, Sphere};
-use crate::math::{DMat3, DVec3, Mat3, Vec3};
+use crate::math::{DMat3, DVec3, Mat3, Rgb, Vec3};
 
-/// The emitter of `light`, which is no shaded dome; `None` where it emits nothing. All substitutes are told in one warning.
-pub fn prepare(desc: &SceneDesc, light: &LightDesc, origin: DVec3, warnings: &mut Warnings) -> Option<AnyEmitter> {
+/// The emitter of `light`, which is no shaded dome, with its `shader`; `None` where it emits nothing. All substitutes are
+/// told in one warning.
+pub fn prepare(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    origin: DVec3,
+    shader: Option<&LampShader>,
+    warnings: &mut Warnings,
+) -> Option<AnyEmitter> {
     let mut mended = Mended::default();
-    let emitter = emitter(desc, light, origin, &mut mended);
+    let emitter = emitter(desc, light, origin, shader, &mut mended);
     mended.tell(light, emitter.is_none(), warnings);
     emitter
 }
 
-fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mended) -> Option<AnyEmitter> {
+fn emitter(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    origin: DVec3,
+    shader: Option<&LampShader>,
+    mended: &mut Mended,
+) -> Option<AnyEmitter> {
     let color = mended.color("intensity", light.kind.color());
     if color.is_black() {
         return None;
@@ -25,7 +39,8 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
     let axes = axes(light, mended);
     let far = matches!(light.kind, LightKind::Distant { .. }) || light.kind.is_dome();
     let p = if far { Vec3::ZERO } else { position(light, origin, mended)? };
-    let profile = if far { None } else { shaping::profile(desc, light, axes, mended)? };
+    let drawn = shader.filter(|shader| !shader.by_place()).map(LampShader::drawn);
+    let profile = if far { None } else { shaping::profile(desc, light, axes, drawn, mended)? };
     Some(match light.kind {
         LightKind::Point { .. } => Point { p, intensity: color, profile }.into(),
         LightKind::Sphere { radius, facing, .. } => {
@@ -37,7 +52,11 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
         }
         LightKind::Distant { angle, .. } => {
             let angle = mended.clamped("angle", angle, [0.0, PI]);
-            Distant::new(axes.z_axis.as_vec3(), angle as f32, color).into()
+            let factor = shader.map_or(Rgb::WHITE, |shader| shader.of_sun(light, angle, mended));
+            if factor.is_black() {
+                return None;
+            }
+            Distant::new(axes.z_axis.as_vec3(), angle as f32, color * factor).into()
         }
         LightKind::Dome { image, .. } => {
             let orientation = Mat3::from_cols(axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), axes.z_axis.as_vec3());
@@ -46,7 +65,7 @@ fn emitter(desc: &SceneDesc, light: &LightDesc, origin: DVec3, mended: &mut Mend
         LightKind::ShadedDome { .. } | LightKind::Portal { .. } => return None,
         LightKind::Rect { .. } | LightKind::Disk { .. } => {
             let flat = Flat { profile, ..Flat::new(light.transform.translation - origin, axes, color) };
-            flat::prepare(desc, light, flat, mended)?
+            flat::prepare(desc, light, flat, shader, mended)?
         }
     })
 }
@@ -128,7 +147,7 @@ mod tests {
         };
         let desc = SceneDesc { ies: vec![profile(5.0), profile(0.0)], ..SceneDesc::default() };
         let mut warnings = Warnings::new();
-        let emitter = prepare(&desc, light, DVec3::ZERO, &mut warnings);
+        let emitter = prepare(&desc, light, DVec3::ZERO, None, &mut warnings);
         assert!(warnings.len() <= 1);
         (emitter, warnings.iter().map(ToString::to_string).collect())
     }

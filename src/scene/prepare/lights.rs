@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::cache::Cache;
 use super::emissive::{Emissive, Shared};
 use super::geometry::Geometry;
+use super::lamp_shader::LampShader;
 use super::links::Links;
 use super::mend::Mended;
 use super::{dome, lamp, portals, shadow_look, shaping, suns};
@@ -13,9 +14,10 @@ use crate::error::Warnings;
 use crate::light::{AnyEmitter, Light, Rules, Seen, ShadowLook};
 
 /// Factors of a light's light; what is no factor counts as 0.
-fn response(factors: [f64; 2]) -> Option<[f32; 2]> {
-    let usable = |x: f64| if x.is_finite() && x > 0.0 { x as f32 } else { 0.0 };
-    (factors != [1.0; 2]).then(|| factors.map(usable))
+fn response(of: &LightLinks) -> Option<[f32; 2]> {
+    let sign = if of.takes { -1.0 } else { 1.0 };
+    let usable = |x: f64| if x.is_finite() && x > 0.0 { sign * x as f32 } else { 0.0 };
+    (of.takes || of.response != [1.0; 2]).then(|| of.response.map(usable))
 }
 
 /// Every light of the scene, `extra` included; instances learn which light they are. `groups` are
@@ -41,14 +43,18 @@ pub fn prepare(
         shadow: links.shadow(of),
         look,
         receivers: links.receivers(of),
-        response: response(of.response),
+        response: response(of),
+        max_bounces: of.max_bounces.unwrap_or(u32::MAX),
     };
     let portals = portals::prepare(desc, shared.origin, warnings);
     let mut lights = Vec::new();
     for light in desc.lights.iter().chain(extra).filter(|light| !light.kind.is_portal()) {
         let mut emitter = match light.kind {
             LightKind::ShadedDome { shader } => dome::shaded(desc, light, shader, shared, cache).map(Into::into),
-            _ => lamp::prepare(desc, light, shared.origin, warnings),
+            _ => {
+                let shader = LampShader::of(desc, light, shared);
+                lamp::prepare(desc, light, shared.origin, shader.as_ref(), warnings)
+            }
         };
         if let (Some(AnyEmitter::Dome(dome)), Some(portals)) = (&mut emitter, &portals) {
             dome.guide(portals.clone());

@@ -35,6 +35,8 @@ pub struct Materials {
     pub names: Names,
     /// Programs of the radiance of `SceneDesc::dome_shaders`.
     pub domes: Vec<Program>,
+    /// Programs of the factors of `SceneDesc::lamp_shaders`.
+    pub lamps: Vec<Program>,
     /// Program of what the background gives as AOVs, and which AOV each of its values is.
     pub background: Option<(Program, Vec<usize>)>,
 }
@@ -61,13 +63,13 @@ pub fn prepare(
         // A material that nothing uses keeps its index, and none of its textures.
         .map(|(material, used)| builder.material(if used { material } else { &fallback }, warnings))
         .collect();
-    let domes = desc.dome_shaders.iter();
-    let domes = domes.map(|shader| {
-        graphs::program(&fallback, &shader.graph, &[shader.radiance], &mut builder.textures, &mut builder.names)
-    });
-    let domes = domes.collect();
+    let mut program = |graph: &Graph, value: ValueId| {
+        graphs::program(&fallback, graph, &[value], &mut builder.textures, &mut builder.names)
+    };
+    let domes = desc.dome_shaders.iter().map(|shader| program(&shader.graph, shader.radiance)).collect();
+    let lamps = desc.lamp_shaders.iter().map(|shader| program(&shader.graph, shader.factor)).collect();
     let background = aovs::background(&mut builder);
-    Materials { list, textures: builder.textures.list, names: builder.names, domes, background }
+    Materials { list, textures: builder.textures.list, names: builder.names, domes, lamps, background }
 }
 
 struct Builder<'a> {
@@ -267,8 +269,8 @@ impl Builder<'_> {
             aovs: self.program(inputs),
         };
         let of_part = |part: &Part| part.bends.as_ref().is_some_and(|bends| bends.normal.is_some());
-        let bumps =
-            desc.bump_correction && (normal_map.is_some() || programs.normal.is_some() || parts.iter().any(of_part));
+        let of_whole = !desc.relief && (normal_map.is_some() || programs.normal.is_some());
+        let bumps = desc.bump_correction && (of_whole || parts.iter().any(of_part));
         Material {
             parts,
             alpha,
@@ -282,6 +284,8 @@ impl Builder<'_> {
             interior: volume.map(|volume| Interior { sigma: absorption(&volume), adds: volume.adds }),
             emission,
             unlit: desc.unlit,
+            unbounded: desc.unbounded,
+            relief: desc.relief,
             tinted: desc.tinted,
             holdout: desc.holdout,
             normal: normal_map,
@@ -302,6 +306,9 @@ pub fn emission_is_lost(desc: &MaterialDesc) -> bool {
 /// Emitted radiance, or the factor of its texture.
 fn emission(desc: &MaterialDesc, mended: &mut Mended) -> Rgb {
     let strength = desc.emission_strength;
+    if desc.unbounded {
+        return mended.signed_color("emission", desc.emission.factor.map(|c| c * strength));
+    }
     // Two negative factors make no light.
     let product = |c: f64| if strength < 0.0 { -(c * strength).abs() } else { c * strength };
     mended.color("emission", desc.emission.factor.map(product))

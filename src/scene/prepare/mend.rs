@@ -38,17 +38,24 @@ impl Mended {
 
     /// `rgb` without what is no light, black where nothing is left; `what` names it.
     pub fn color(&mut self, what: &str, rgb: [f64; 3]) -> Rgb {
+        if rgb.iter().any(|v| v.is_finite() && *v < 0.0) {
+            self.note(format!("its {what} is negative: taken as 0"));
+        }
+        self.signed_color(what, rgb.map(|v| if v < 0.0 { 0.0 } else { v }))
+    }
+
+    /// `rgb` where light may be taken away, too.
+    pub fn signed_color(&mut self, what: &str, rgb: [f64; 3]) -> Rgb {
         let largest = f64::from(LARGEST);
         for (bad, is, taken) in [
             (rgb.iter().any(|v| !v.is_finite()), "not finite", "0"),
-            (rgb.iter().any(|v| v.is_finite() && *v < 0.0), "negative", "0"),
-            (rgb.iter().any(|v| v.is_finite() && *v > largest), "too bright", "1e30"),
+            (rgb.iter().any(|v| v.is_finite() && v.abs() > largest), "too bright", "1e30"),
         ] {
             if bad {
                 self.note(format!("its {what} is {is}: taken as {taken}"));
             }
         }
-        Rgb::from(rgb.map(|v| if v.is_finite() { v.clamp(0.0, largest) } else { 0.0 }))
+        Rgb::from(rgb.map(|v| if v.is_finite() { v.clamp(-largest, largest) } else { 0.0 }))
     }
 
     /// A length in metres above 0; `None` for a light that has no size.

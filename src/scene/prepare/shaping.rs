@@ -7,16 +7,22 @@ use super::lamp::{axes, proportions};
 use super::mend::Mended;
 use crate::desc::{ConeDesc, DecayDesc, DecayLaw, IesRef, InstanceDesc, LightDesc, LightKind, SceneDesc};
 use crate::error::Warnings;
-use crate::light::{Cone, Decay, Falloff, Ies, Profile, Shaping};
+use crate::light::{Cone, Decay, Drawn, Falloff, Ies, Profile, Shaping};
 use crate::math::DMat3;
 
 /// Sharpest focus: a cone of about a tenth of a degree.
 const SHARPEST_FOCUS: f64 = 1e6;
 
-/// The profile of `light`, whose orthonormal axes in render space are `axes`: `Some(None)` where it has
-/// neither shaping nor decay, `None` where they leave no light.
-pub fn profile(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -> Option<Option<Arc<Profile>>> {
-    let profile = made(desc, light, axes, mended);
+/// The profile of `light`, whose orthonormal axes in render space are `axes`, with what its graph has `drawn`:
+/// `Some(None)` where it has neither shaping nor decay, `None` where they leave no light.
+pub fn profile(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    axes: DMat3,
+    drawn: Option<Drawn>,
+    mended: &mut Mended,
+) -> Option<Option<Arc<Profile>>> {
+    let profile = made(desc, light, axes, drawn, mended);
     if profile.as_ref().is_some_and(|profile| profile.peak().is_black()) {
         mended.note("its shaping leaves no light");
         return None;
@@ -33,7 +39,7 @@ pub fn of_instance(desc: &SceneDesc, instance: &InstanceDesc, warnings: &mut War
     let lamp = LightDesc { shaping: shaped.shaping, ..lamp };
     let mut mended = Mended::default();
     let axes = axes(&lamp, &mut mended);
-    let profile = made(desc, &lamp, axes, &mut mended);
+    let profile = made(desc, &lamp, axes, None, &mut mended);
     let shines = profile.as_ref().is_none_or(|profile| !profile.peak().is_black());
     if !shines {
         mended.note("its shaping leaves no light");
@@ -42,7 +48,13 @@ pub fn of_instance(desc: &SceneDesc, instance: &InstanceDesc, warnings: &mut War
     (profile, shines)
 }
 
-fn made(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -> Option<Arc<Profile>> {
+fn made(
+    desc: &SceneDesc,
+    light: &LightDesc,
+    axes: DMat3,
+    drawn: Option<Drawn>,
+    mended: &mut Mended,
+) -> Option<Arc<Profile>> {
     let decay = decay(light.decay, mended);
     let of = &light.shaping;
     let matrix = light.transform.matrix3;
@@ -53,8 +65,10 @@ fn made(desc: &SceneDesc, light: &LightDesc, axes: DMat3, mended: &mut Mended) -
         focus,
         focus_tint: of.focus_tint.map(|tint| mended.clamped("focus tint", tint, [0.0, f64::from(f32::MAX)])),
         ies: of.ies.and_then(|ies| self::ies(desc, ies, mended)),
+        drawn,
     };
-    if shaping.cone.is_none() && focus == 0.0 && shaping.ies.is_none() && decay == Decay::PHYSICAL {
+    let plain = shaping.cone.is_none() && focus == 0.0 && shaping.ies.is_none() && shaping.drawn.is_none();
+    if plain && decay == Decay::PHYSICAL {
         return None;
     }
     Some(Arc::new(Profile::new(axes, shaping, decay)))

@@ -94,7 +94,8 @@ impl Steps {
             | Function::Distance
             | Function::Fresnel
             | Function::LayerFresnel
-            | Function::LayerFacing => true,
+            | Function::LayerFacing
+            | Function::Ies(_) => true,
             Function::Swizzle(places) => places.iter().all(|place| *place == places[0]),
             _ => false,
         };

@@ -9,7 +9,7 @@ use crate::desc::graph::{
     Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value, ValueId,
     finite,
 };
-use crate::desc::{ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, TextureTransform, Wrap};
+use crate::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, TextureTransform, Wrap};
 use crate::error::{Place, Warnings};
 use crate::texture::{Image, Texture, TextureRef, UvTransform};
 
@@ -101,6 +101,7 @@ fn texture(filter: Filter) -> Texture {
         height: 4,
         channels: 4,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::F32(texels),
     };
     let image = Image::new(image, &mut Warnings::new()).unwrap();

@@ -6,6 +6,7 @@
 
 mod blend;
 mod color;
+mod ies;
 mod map;
 mod math;
 mod range;
@@ -16,6 +17,7 @@ mod vector;
 use std::sync::Arc;
 
 pub use blend::Blend;
+pub use ies::IesTable;
 pub use map::Mapping;
 pub use math::Math;
 pub use range::{Curves, Ramp, RampKind, Range, Table};
@@ -102,6 +104,8 @@ pub enum Function {
     Table(Arc<Table>),
     /// a: each place looked up in its own column; alpha stays.
     Curves(Arc<Table>),
+    /// direction (−z is the axis): a measured distribution, a number.
+    Ies(Arc<IesTable>),
     /// Hue, saturation, value (all 0 to 1) to red, green, blue.
     HsvToRgb,
     /// And back.
@@ -186,6 +190,7 @@ impl Function {
             Self::Ramp(ramp) => ramp.at(a[0]),
             Self::Table(table) => table.row(a[0]),
             Self::Curves(table) => table.columns(a),
+            Self::Ies(table) => [table.at(a); 4],
             Self::HsvToRgb => color::hsv_to_rgb(a),
             Self::RgbToHsv => color::rgb_to_hsv(a),
             Self::HslToRgb => color::hsl_to_rgb(a),

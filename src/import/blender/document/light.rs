@@ -49,6 +49,8 @@ pub struct LightData {
     pub is_portal: bool,
     /// Its light is stopped by objects.
     pub use_shadow: bool,
+    /// How often light was scattered before, at most, where it lights (`cycles.max_bounces`).
+    pub max_bounces: Option<u32>,
     /// Its nodes; `None` where `use_nodes` is off.
     pub nodes: Option<TreeData>,
     /// Light group.
@@ -83,6 +85,7 @@ impl Default for LightData {
             spread: PI,
             is_portal: false,
             use_shadow: true,
+            max_bounces: None,
             nodes: None,
             lightgroup: String::new(),
             visibility: VisibilityData::default(),

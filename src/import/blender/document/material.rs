@@ -16,6 +16,8 @@ pub struct MaterialData {
     pub diffuse_color: [f64; 4],
     /// `cycles.use_bump_map_correction`.
     pub bump_correction: bool,
+    /// `displacement_method`: `BUMP`, `DISPLACEMENT` or `BOTH`.
+    pub displacement_method: String,
     /// Its nodes; `None` where `use_nodes` is off.
     pub nodes: Option<TreeData>,
 }
@@ -27,6 +29,7 @@ impl Default for MaterialData {
             pass_index: 0,
             diffuse_color: [0.8, 0.8, 0.8, 1.0],
             bump_correction: true,
+            displacement_method: "BUMP".into(),
             nodes: None,
         }
     }

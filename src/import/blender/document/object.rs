@@ -38,6 +38,9 @@ pub struct ObjectData {
     pub terminator: TerminatorData,
     /// Light group of what it emits.
     pub lightgroup: String,
+    /// Attributes of it, of what instances it and of the view layer that materials ask for: type and name, and four
+    /// numbers.
+    pub attributes: Vec<(String, [f64; 4])>,
     /// Whom its light falls on (light linking).
     pub receivers: Option<LinkData>,
     /// What stops its light (shadow linking).
@@ -58,6 +61,7 @@ impl Default for ObjectData {
             shadow_catcher: false,
             terminator: TerminatorData::default(),
             lightgroup: String::new(),
+            attributes: Vec::new(),
             receivers: None,
             blockers: None,
         }

@@ -18,6 +18,8 @@ pub struct RenderData {
     pub exposure: f64,
     /// The world is not seen by the camera, alpha is 0 there.
     pub film_transparent: bool,
+    /// Roughness up to which it is not seen through glass either (`cycles.film_transparent_glass` and `…_roughness`).
+    pub transparent_glass: Option<f64>,
     /// The view layer's.
     pub pass_alpha_threshold: f64,
     /// When the shutter opens and closes, frames after the frame; both 0 without motion blur.
@@ -34,6 +36,7 @@ impl Default for RenderData {
             border: None,
             exposure: 1.0,
             film_transparent: false,
+            transparent_glass: None,
             pass_alpha_threshold: 0.5,
             shutter: [0.0; 2],
             aovs: Vec::new(),
@@ -57,6 +60,7 @@ impl RenderData {
                 [left, height.saturating_sub(upper), right.saturating_sub(left), upper.saturating_sub(lower)]
             }),
             film_transparent: Some(self.film_transparent),
+            transparent_glass: self.transparent_glass,
             pass_alpha_threshold: self.pass_alpha_threshold,
             aovs: self.aovs.iter().map(aov).collect(),
             ..RenderDesc::default()

@@ -10,6 +10,15 @@ pub struct Part<'a> {
     pub weight: ValueId,
     /// The node that it is.
     pub at: At<'a>,
+    /// What it emits, where the node is no shader: Blender makes an emission of any color or number in a shader's place.
+    pub emitted: Option<ValueId>,
+}
+
+impl Part<'_> {
+    /// True for what emits and does nothing else.
+    pub fn emits(&self) -> bool {
+        self.emitted.is_some() || matches!(self.at.node.r#type.as_str(), "ShaderNodeEmission" | "ShaderNodeBackground")
+    }
 }
 
 /// Most parts that one surface may have.
@@ -40,7 +49,11 @@ fn collect<'a>(
     if nothing || depth > 100 || parts.len() > MOST {
         return;
     }
-    let Source::Output(at, _) = flow.source(at, input) else { return };
+    let Source::Output(at, output) = flow.source(at, input) else { return };
+    if at.node.outputs.get(output).is_some_and(|socket| !matches!(socket.r#type.as_str(), "" | "SHADER")) {
+        let emitted = Some(flow.color_of(at, output));
+        return parts.push(Part { weight, at, emitted });
+    }
     let shader = |name: &str| at.node.input(name);
     match at.node.r#type.as_str() {
         "ShaderNodeMixShader" => {
@@ -60,6 +73,6 @@ fn collect<'a>(
                 collect(flow, at, input, weight, depth + 1, parts);
             }
         }
-        _ => parts.push(Part { weight, at }),
+        _ => parts.push(Part { weight, at, emitted: None }),
     }
 }

@@ -7,7 +7,7 @@ use super::super::image::Images;
 use super::super::layers::UvSets;
 use super::tree::{NodeData, SocketData, TreeData};
 use super::values;
-use crate::desc::graph::{Graph, ValueId};
+use crate::desc::graph::{Graph, Leaf, Quantity, Space, ValueId};
 use crate::desc::{DecayDesc, DomeSun};
 use crate::error::{Place, Warnings};
 
@@ -59,6 +59,8 @@ pub struct Flow<'a, 'i> {
     pub suns: Vec<DomeSun>,
     /// True for the tree of a world.
     pub is_world: bool,
+    /// The shading normal that the displacement makes, where there is one.
+    relief: Option<ValueId>,
     warnings: &'a mut Warnings,
     scopes: Vec<Scope<'a>>,
     entered: HashMap<(usize, usize), usize>,
@@ -86,6 +88,7 @@ impl<'a, 'i> Flow<'a, 'i> {
             falloff: None,
             suns: Vec::new(),
             is_world: false,
+            relief: None,
             warnings,
             scopes: vec![Scope { tree, group: None }],
             entered: HashMap::new(),
@@ -97,6 +100,11 @@ impl<'a, 'i> Flow<'a, 'i> {
     /// Tells of something that was replaced or left out.
     pub fn warn(&mut self, what: impl Into<String>) {
         self.warnings.push(&self.place, what);
+    }
+
+    /// Where something of a node is told, and who takes it down.
+    pub fn told_at(&mut self, node: &str) -> (Place, &mut Warnings) {
+        (self.place.at(node), self.warnings)
     }
 
     /// The output node of the outermost tree: the active one, that of Cycles before that of others.
@@ -197,6 +205,31 @@ impl<'a, 'i> Flow<'a, 'i> {
         std::iter::successors(self.scopes[scope].group, |group| self.scopes[group.scope].group).count()
     }
 
+    /// Lets all that follows see the normal that the displacement makes.
+    pub fn set_relief(&mut self, relief: Option<ValueId>) {
+        self.relief = relief;
+        // Values so far go by the normal without it.
+        self.values.clear();
+    }
+
+    /// The normal that the displacement makes.
+    pub fn relief(&self) -> Option<ValueId> {
+        self.relief
+    }
+
+    /// The shading normal, world space.
+    pub fn normal(&mut self) -> ValueId {
+        self.relief.unwrap_or_else(|| self.graph.leaf(Leaf::Normal))
+    }
+
+    /// The shading normal, object space.
+    pub fn object_normal(&mut self) -> ValueId {
+        match self.relief {
+            Some(normal) => self.graph.transform(Quantity::Normal, Space::World, Space::Object, normal),
+            None => self.graph.leaf(Leaf::ObjectNormal),
+        }
+    }
+
     /// True where something is linked to the input.
     pub fn is_linked(&mut self, at: At<'a>, name: &str) -> bool {
         at.node.input(name).is_some_and(|input| matches!(self.source(at, input), Source::Output(..)))
@@ -247,6 +280,13 @@ impl<'a, 'i> Flow<'a, 'i> {
                 self.converted(value, from, kind)
             }
         }
+    }
+
+    /// The value of an output as a color.
+    pub fn color_of(&mut self, at: At<'a>, output: usize) -> ValueId {
+        let value = self.output(at, output);
+        let from = at.node.outputs.get(output).map_or("", |socket| socket.r#type.as_str());
+        self.converted(value, from, "RGBA")
     }
 
     fn output(&mut self, at: At<'a>, output: usize) -> ValueId {

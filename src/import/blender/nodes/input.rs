@@ -2,7 +2,7 @@
 
 use super::super::mesh::tangents_of;
 use super::flow::{At, Flow};
-use crate::desc::graph::{Leaf, PathInfo, Quantity, Space, ValueId};
+use crate::desc::graph::{Function, Leaf, PathInfo, Quantity, Space, ValueId};
 
 /// Value and RGB.
 pub fn constant<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
@@ -14,12 +14,15 @@ pub fn constant<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
 pub fn texture_coordinate<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     match output {
         "Generated" => flow.graph.leaf(Leaf::Generated),
-        "Normal" => flow.graph.leaf(Leaf::ObjectNormal),
+        "Normal" => flow.object_normal(),
         "UV" => flow.graph.uv_upwards(0),
         "Object" => object_coordinates(flow, at),
         "Camera" => flow.graph.leaf(Leaf::CameraPosition),
         "Window" => flow.graph.leaf(Leaf::Window),
-        _ => flow.graph.reflection(),
+        _ => {
+            let normal = flow.normal();
+            flow.graph.reflection(normal)
+        }
     }
 }
 
@@ -48,16 +51,20 @@ pub fn uv_set(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
     }
 }
 
+/// The attribute of meshes that Random Per Island reads.
+const RANDOM_PER_ISLAND: &str = "random per island";
+
 /// Geometry.
 pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
     let leaf = match output {
         "Position" => Leaf::Position,
-        "Normal" => Leaf::Normal,
+        "Normal" => return flow.normal(),
         "Tangent" => Leaf::RadialTangent,
         "True Normal" => Leaf::TrueNormal,
         "Incoming" => Leaf::Incoming,
         "Parametric" => Leaf::Parametric,
         "Backfacing" => Leaf::Backfacing,
+        "Random Per Island" => Leaf::Attribute { name: RANDOM_PER_ISLAND.into(), fallback: [0.0; 4] },
         _ => {
             flow.warn(format!("the output {output} of the Geometry node is not supported; 0.5 is taken for it"));
             return flow.graph.number(0.5);
@@ -70,8 +77,14 @@ pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId
 pub fn attribute<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     let (name, of) = (at.node.text("attribute_name"), at.node.text("attribute_type"));
     if of != "GEOMETRY" {
-        flow.warn(format!("the attribute \"{name}\" is one of {of}, which is not supported; 0 is taken for it"));
-        return flow.graph.constant([0.0; 4]);
+        // The add-on sends those that are asked for with the objects.
+        let name = format!("{of} {name}");
+        let value = flow.graph.leaf(Leaf::Attribute { name: name.into(), fallback: [0.0; 4] });
+        return match output {
+            "Fac" => flow.graph.average(value),
+            "Alpha" => flow.graph.place(value, 3),
+            _ => value,
+        };
     }
     if flow.uv_sets.set(name).is_some() && !name.is_empty() {
         let uv = uv_set(flow, name);
@@ -137,7 +150,6 @@ pub fn light_path<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> Value
 
 /// Camera Data.
 pub fn camera_data<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
-    use crate::desc::graph::Function;
     let position = flow.graph.leaf(Leaf::CameraPosition);
     match output {
         "View Z Depth" => {
@@ -155,10 +167,19 @@ pub fn tangent<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
         let tangent = tangent_of_map(flow, at.node.text("uv_map"));
         return flow.graph.transform(Quantity::Vector, Space::Object, Space::World, tangent);
     }
-    if at.node.text("axis") != "Z" {
-        flow.warn("radial tangents are around the z axis, whatever axis the Tangent node names");
-    }
-    flow.graph.leaf(Leaf::RadialTangent)
+    // Around the axis through the middle of the generated coordinates; rows of what the place there makes of it.
+    let rows = match at.node.text("axis") {
+        "X" => [[0.0; 4], [0.0, 0.0, -1.0, 0.5], [0.0, 1.0, 0.0, -0.5]],
+        "Y" => [[0.0, 0.0, -1.0, 0.5], [0.0; 4], [1.0, 0.0, 0.0, -0.5]],
+        _ => return flow.graph.leaf(Leaf::RadialTangent),
+    };
+    let place = flow.graph.leaf(Leaf::Generated);
+    let around = flow.graph.affine(rows, place);
+    let around = flow.graph.transform(Quantity::Normal, Space::Object, Space::World, around);
+    let normal = flow.normal();
+    let across = flow.graph.apply(Function::Cross, &[around, normal]);
+    let across = flow.graph.apply(Function::Normalize(3), &[across]);
+    flow.graph.apply(Function::Cross, &[normal, across])
 }
 
 /// The tangent of the UV map of a name, object space, with the sign of the bitangent.
@@ -173,14 +194,14 @@ pub fn tangent_of_map(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
 /// Fresnel.
 pub fn fresnel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
     let ior = flow.input(at, "IOR");
-    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Normal", |flow| flow.normal());
     flow.graph.fresnel(ior, normal)
 }
 
 /// Layer Weight.
 pub fn layer_weight<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     let blend = flow.input(at, "Blend");
-    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Normal", |flow| flow.normal());
     if output == "Fresnel" { flow.graph.layer_fresnel(blend, normal) } else { flow.graph.layer_facing(blend, normal) }
 }
 

@@ -1,38 +1,40 @@
-//! Lamps: emission that is the same in all directions, and how it falls off.
+//! Lamps: what they emit, and how it falls off.
 
 use super::super::light::LampShader;
-use super::closure;
+use super::closure::{self, Part};
 use super::flow::{At, Flow};
-use crate::desc::DecayLaw;
 use crate::desc::graph::ValueId;
+use crate::desc::{DecayLaw, LampShaderDesc};
 
-/// What the nodes of a lamp emit. What depends on more than numbers is told; the lamp's own color then
-/// stands for it.
+/// What the nodes of a lamp emit.
 pub fn lamp(flow: &mut Flow<'_, '_>) -> LampShader {
     let black = LampShader { factor: [0.0; 3], ..LampShader::default() };
     let Some(output) = flow.output_node("ShaderNodeOutputLight") else { return black };
     let Some(surface) = output.node.input("Surface") else { return black };
-    let mut factor = [0.0; 3];
+    let mut sum = flow.graph.number(0.0);
     for part in closure::parts(flow, output, surface) {
-        if part.at.node.r#type != "ShaderNodeEmission" {
+        if !part.emits() {
             let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
             flow.warn(format!("the shader \"{name}\" ({kind}) of a lamp is not supported; it is left out"));
             continue;
         }
-        let emitted = emission(flow, part.at, part.weight);
-        let Some(value) = flow.graph.known(emitted) else {
-            flow.warn("the lamp's nodes vary over it, which is not supported; they count as 1");
-            return LampShader::default();
-        };
-        (0..3).for_each(|i| factor[i] += value[i]);
+        let emitted = emission(flow, part);
+        sum = flow.graph.add(sum, emitted);
     }
-    LampShader { factor, decay: flow.falloff.unwrap_or_default() }
+    let decay = flow.falloff.unwrap_or_default();
+    if let Some([r, g, b, _]) = flow.graph.known(sum) {
+        return LampShader { factor: [r, g, b], varying: None, decay };
+    }
+    let varying = Some(LampShaderDesc { graph: std::mem::take(&mut flow.graph), factor: sum });
+    LampShader { factor: [1.0; 3], varying, decay }
 }
 
-/// Color × strength × weight of an Emission or Background node.
-pub fn emission<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, weight: ValueId) -> ValueId {
-    let (color, strength) = (flow.input(at, "Color"), flow.input(at, "Strength"));
-    let emitted = flow.graph.multiply(color, strength);
+/// Color × strength × weight of a part that emits.
+pub fn emission<'a>(flow: &mut Flow<'a, '_>, Part { weight, at, emitted }: Part<'a>) -> ValueId {
+    let emitted = emitted.unwrap_or_else(|| {
+        let (color, strength) = (flow.input(at, "Color"), flow.input(at, "Strength"));
+        flow.graph.multiply(color, strength)
+    });
     flow.graph.multiply(emitted, weight)
 }
 

@@ -7,7 +7,9 @@
 mod aov;
 mod closure;
 mod color;
+mod displacement;
 mod flow;
+mod ies;
 mod input;
 mod lamp;
 mod math;
@@ -58,14 +60,15 @@ pub fn background_aovs(
     aov::background(Flow::new(tree, images, &UvSets::default(), version, place, warnings))
 }
 
-/// `base` with what the nodes of a material make of its surface.
+/// `base` with what the nodes of a material make of its surface; `displacement` is its `displacement_method`.
 pub fn surface(
     tree: &TreeData,
     base: MaterialDesc,
     images: &mut Images<'_>,
     uv_sets: &UvSets,
+    displacement: &str,
     warnings: &mut Warnings,
 ) -> MaterialDesc {
     let (version, place) = (images.version(), base.place.clone());
-    surface::surface(&mut Flow::new(tree, images, uv_sets, version, place, warnings), base)
+    surface::surface(&mut Flow::new(tree, images, uv_sets, version, place, warnings), base, displacement)
 }

@@ -28,6 +28,7 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
     let transmission = number(flow, at, "Transmission Weight");
     let layers = MaterialDesc {
         base_color: input(flow, at, "Base Color"),
+        unbounded: true,
         metallic: number(flow, at, "Metallic"),
         metal_edge: input(flow, at, "Specular Tint"),
         diffuse_roughness: optional(flow, at, "Diffuse Roughness", 0.0),
@@ -67,7 +68,7 @@ fn covered<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, emission: ValueId) -> ValueI
         return emission;
     }
     let ior = flow.input_or(at, "Coat IOR", 1.5);
-    let normal = flow.linked_or(at, "Coat Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Coat Normal", |flow| flow.normal());
     let one = flow.graph.number(1.0);
     let reflected = flow.graph.fresnel(ior, normal);
     let reflected = flow.graph.multiply(reflected, weight);

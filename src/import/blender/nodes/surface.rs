@@ -5,6 +5,7 @@
 
 use super::aov;
 use super::closure::{self, Part};
+use super::displacement;
 use super::flow::{At, Flow};
 use super::lamp::emission;
 use super::principled::{self, principled};
@@ -26,21 +27,24 @@ struct Sum {
 }
 
 /// `base` with the surface of the tree.
-pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
+///
+/// `displacement` is `material.displacement_method`.
+pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc, displacement: &str) -> MaterialDesc {
     let output = flow.output_node("ShaderNodeOutputMaterial");
+    let relief = output.and_then(|output| displacement::relief(flow, output, displacement));
+    flow.set_relief(relief);
     let parts = match output.and_then(|output| Some((output, output.node.input("Surface")?))) {
         Some((output, input)) => closure::parts(flow, output, input),
         None => Vec::new(),
     };
-    if output.is_some_and(|output| flow.is_linked(output, "Displacement")) {
-        flow.warn("displacement is not rendered yet: the surface stays where it is");
-    }
     let inside = output.and_then(|output| volume::volume(flow, output));
     // A volume alone: nothing is at its boundary.
     let bare = inside.is_some() && output.is_some_and(|output| !flow.is_linked(output, "Surface"));
     let mut material = match parts[..] {
-        [Part { weight, at }]
-            if at.node.r#type == "ShaderNodeBsdfPrincipled" && flow.graph.known(weight) == Some([1.0; 4]) =>
+        [Part { weight, at, emitted: None }]
+            if at.node.r#type == "ShaderNodeBsdfPrincipled"
+                && flow.graph.known(weight) == Some([1.0; 4])
+                && !(relief.is_some() && flow.is_linked(at, "Normal")) =>
         {
             principled::alone(flow, at, base)
         }
@@ -53,6 +57,7 @@ pub fn surface(flow: &mut Flow<'_, '_>, base: MaterialDesc) -> MaterialDesc {
         }
     };
     material.volume = inside.or(material.volume);
+    material.relief = relief.is_some();
     if bare {
         material.transparency = ColorInput::constant([1.0; 3]);
     }
@@ -70,11 +75,12 @@ fn mixed(flow: &mut Flow<'_, '_>, sum: Sum, base: MaterialDesc) -> MaterialDesc 
     };
     let (transparent, emitted) = (total(transparent), total(emitted));
     let black = ScalarInput::constant(0.0);
-    // Normals that are the same everywhere are the material's.
-    let normal = parts.first().and_then(|part| part.normal);
-    let shared = parts.iter().all(|part| part.normal == normal);
-    let parts = parts.into_iter().map(|part| PartDesc { normal: part.normal.filter(|_| !shared), ..part });
-    let parts: Vec<_> = parts.collect();
+    // Normals that are the same everywhere are the material's, and that of a relief is.
+    let relief = flow.relief().map(NormalInput::Graph);
+    let normal = relief.or(parts.first().and_then(|part| part.normal));
+    let shared = relief.is_some() || parts.iter().all(|part| part.normal == normal);
+    let own = |part: &PartDesc| part.normal.filter(|own| !(shared && Some(*own) == normal));
+    let parts: Vec<_> = parts.into_iter().map(|part| PartDesc { normal: own(&part), ..part }).collect();
     let transmits = parts.iter().any(|part| part.closure.transmits());
     MaterialDesc {
         // Without parts nothing scatters.
@@ -91,7 +97,11 @@ fn mixed(flow: &mut Flow<'_, '_>, sum: Sum, base: MaterialDesc) -> MaterialDesc 
 }
 
 /// Adds what one shader does.
-fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum) {
+fn add<'a>(flow: &mut Flow<'a, '_>, part: Part<'a>, sum: &mut Sum) {
+    if part.emits() {
+        return sum.emitted.push(emission(flow, part));
+    }
+    let Part { weight, at, .. } = part;
     let closure = match at.node.r#type.as_str() {
         "ShaderNodeBsdfPrincipled" => {
             let (layers, alpha, emission) = principled(flow, at);
@@ -106,7 +116,6 @@ fn add<'a>(flow: &mut Flow<'a, '_>, Part { weight, at }: Part<'a>, sum: &mut Sum
             sum.parts.push(PartDesc { weight: scalar(flow, weight), normal, closure });
             return;
         }
-        "ShaderNodeEmission" => return sum.emitted.push(emission(flow, at, weight)),
         "ShaderNodeBsdfTransparent" => {
             let color = flow.input(at, "Color");
             return sum.transparent.push(flow.graph.multiply(color, weight));
@@ -256,9 +265,10 @@ pub(super) fn anisotropy<'a>(
     })
 }
 
-/// The normal that is linked to an input.
+/// The normal that is linked to an input, or that the displacement makes.
 pub(super) fn normal<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> Option<NormalInput> {
-    flow.is_linked(at, name).then(|| NormalInput::Graph(flow.input(at, name)))
+    let linked = flow.is_linked(at, name).then(|| flow.input(at, name));
+    linked.or(flow.relief()).map(NormalInput::Graph)
 }
 
 pub(super) fn input<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, name: &str) -> ColorInput {

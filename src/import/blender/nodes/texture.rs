@@ -1,5 +1,7 @@
 //! Image textures.
 
+use super::super::blending::AlphaUse;
+use super::super::document::ImageData;
 use super::super::image::Look;
 use super::flow::{At, Flow};
 use crate::desc::graph::{Function, Leaf, Math, ValueId};
@@ -10,7 +12,7 @@ pub fn image<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> ValueId {
     let coordinates = flow.linked_or(at, "Vector", |flow| flow.graph.uv_upwards(0));
     let texel = match at.node.text("projection") {
         "BOX" => {
-            let normal = flow.graph.leaf(Leaf::ObjectNormal);
+            let normal = flow.object_normal();
             let blend = at.node.number("projection_blend").unwrap_or(0.0);
             texture(flow, at, None).map(|texture| flow.graph.box_image(texture, coordinates, normal, blend))
         }
@@ -70,8 +72,14 @@ fn texture<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, tile: Option<u32>) -> Option
         "MIRROR" => Wrap::Mirror,
         _ => Wrap::Repeat,
     };
-    let filter = if at.node.text("interpolation") == "Closest" { Filter::Nearest } else { Filter::Linear };
-    flow.images.texture(at.node.text("image"), tile, Look { wrap, filter })
+    // Cycles' Smart is Cubic, unless shaders are written in OSL.
+    let filter = match at.node.text("interpolation") {
+        "Closest" => Filter::Nearest,
+        "Cubic" | "Smart" => Filter::Cubic,
+        _ => Filter::Linear,
+    };
+    let alpha = alpha_use(flow, at);
+    flow.images.texture(at.node.text("image"), tile, Look { wrap, filter, alpha })
 }
 
 /// The output of an image node.
@@ -80,18 +88,22 @@ fn of_texel<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, texel: Option<ValueId>, out
         // Magenta, as Cycles shows a node without an image.
         return if output == "Alpha" { flow.graph.number(1.0) } else { flow.graph.constant([1.0, 0.0, 1.0, 1.0]) };
     };
-    let data = flow.images.data(at.node.text("image"));
-    let (alpha_mode, is_data) =
-        data.map_or(("", false), |data| (data.alpha_mode.as_str(), data.colorspace == "Non-Color"));
-    if output == "Alpha" {
-        return if alpha_mode == "NONE" { flow.graph.number(1.0) } else { flow.graph.place(texel, 3) };
+    if output != "Alpha" {
+        return texel;
     }
-    // Cycles keeps colors multiplied by alpha, and divides again only where the alpha is used, too.
-    let associated = !is_data && !matches!(alpha_mode, "NONE" | "CHANNEL_PACKED");
-    let alpha_is_used = at.node.output("Alpha").is_none_or(|alpha| flow.is_used(at, alpha));
-    if associated && !alpha_is_used {
-        let alpha = flow.graph.place(texel, 3);
-        return flow.graph.multiply(texel, alpha);
+    let ignored = flow.images.data(at.node.text("image")).is_some_and(|data| data.alpha_mode == "NONE");
+    if ignored { flow.graph.number(1.0) } else { flow.graph.place(texel, 3) }
+}
+
+/// Cycles keeps colours multiplied by alpha, and divides again only where an Image Texture's alpha is used, too.
+fn alpha_use<'a>(flow: &Flow<'a, '_>, at: At<'a>) -> AlphaUse {
+    let apart = |data: &ImageData| {
+        data.colorspace == "Non-Color" || matches!(data.alpha_mode.as_str(), "NONE" | "CHANNEL_PACKED")
+    };
+    let used = || at.node.output("Alpha").is_none_or(|alpha| flow.is_used(at, alpha));
+    match flow.images.data(at.node.text("image")) {
+        Some(data) if apart(data) => AlphaUse::Apart,
+        _ if at.node.r#type == "ShaderNodeTexImage" && used() => AlphaUse::Divided,
+        _ => AlphaUse::Multiplied,
     }
-    texel
 }

@@ -1,7 +1,7 @@
 //! The table of nodes that make values: `bl_idname` and what its outputs are.
 
 use super::flow::{At, Flow};
-use super::{color, input, lamp, math, procedural, sky, texture, vector};
+use super::{color, displacement, ies, input, lamp, math, procedural, sky, texture, vector};
 use crate::desc::graph::ValueId;
 
 /// What the output of this identifier of a node is.
@@ -46,6 +46,7 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeBlackbody", color::blackbody),
     ("ShaderNodeWavelength", color::wavelength),
     ("ShaderNodeTexImage", texture::image),
+    ("ShaderNodeTexIES", ies::ies),
     ("ShaderNodeTexEnvironment", texture::environment),
     ("ShaderNodeTexNoise", procedural::noise),
     ("ShaderNodeTexVoronoi", procedural::voronoi),
@@ -61,6 +62,8 @@ const NODES: &[(&str, Make)] = &[
     ("ShaderNodeNormal", vector::normal),
     ("ShaderNodeNormalMap", vector::normal_map),
     ("ShaderNodeBump", vector::bump),
+    ("ShaderNodeDisplacement", displacement::displacement),
+    ("ShaderNodeVectorDisplacement", displacement::vector),
     ("ShaderNodeVectorRotate", vector::rotate),
     ("ShaderNodeVectorTransform", vector::transform),
     ("ShaderNodeVectorCurve", vector::curves),

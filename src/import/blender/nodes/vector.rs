@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::flow::{At, Flow};
 use super::tables;
-use crate::desc::graph::{Bump, Function, Leaf, Mapping, Op, Quantity, Space, ValueId};
+use crate::desc::graph::{Bump, Function, Mapping, Op, Quantity, Space, ValueId};
 
 /// Mapping.
 pub fn mapping<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
@@ -53,7 +53,7 @@ pub fn normal_map<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
 
 /// Bump.
 pub fn bump<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, _: &str) -> ValueId {
-    let normal = flow.linked_or(at, "Normal", |flow| flow.graph.leaf(Leaf::Normal));
+    let normal = flow.linked_or(at, "Normal", |flow| flow.normal());
     if !flow.is_linked(at, "Height") {
         return normal;
     }

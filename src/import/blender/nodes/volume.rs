@@ -25,7 +25,7 @@ pub fn volume<'a>(flow: &mut Flow<'a, '_>, output: At<'a>) -> Option<VolumeDesc>
     let parts = closure::parts(flow, output, output.node.input("Volume")?);
     let mut lost = Lost::default();
     let mut sigma = [0.0; 3];
-    for Part { weight, at } in parts {
+    for Part { weight, at, .. } in parts {
         let weight = match flow.graph.known(weight) {
             Some(weight) => weight[0],
             None => {

@@ -18,12 +18,12 @@ pub fn world(flow: &mut Flow<'_, '_>) -> Vec<WorldPart> {
     }
     let mut sum = flow.graph.number(0.0);
     for part in closure::parts(flow, output, surface) {
-        if !matches!(part.at.node.r#type.as_str(), "ShaderNodeBackground" | "ShaderNodeEmission") {
+        if !part.emits() {
             let (name, kind) = (&part.at.node.name, &part.at.node.r#type);
             flow.warn(format!("the shader \"{name}\" ({kind}) of a world is not supported; it is left out"));
             continue;
         }
-        let emitted = emission(flow, part.at, part.weight);
+        let emitted = emission(flow, part);
         sum = flow.graph.add(sum, emitted);
     }
     let mut parts = Vec::new();
@@ -114,15 +114,7 @@ fn factored(flow: &Flow<'_, '_>, value: ValueId, factor: &mut [f64; 3]) -> Value
 /// at.
 fn equirectangular(flow: &Flow<'_, '_>, value: ValueId) -> Option<(u32, DMat3)> {
     let graph = &flow.graph;
-    // Its color may be multiplied by its alpha: pictures of surroundings are opaque.
-    let texel = match graph.op(value) {
-        Op::Apply(Function::Math(Math::Multiply), args) => match graph.op(args[1]) {
-            Op::Apply(Function::Swizzle([3, 3, 3, 3]), of) if of[0] == args[0] => args[0],
-            _ => return None,
-        },
-        _ => value,
-    };
-    let Op::Image { texture, uv } = graph.op(texel) else { return None };
+    let Op::Image { texture, uv } = graph.op(value) else { return None };
     let (texture, uv) = (*texture, *uv);
     let Op::Apply(Function::Affine(_), args) = graph.op(uv) else { return None };
     let Op::Apply(Function::Equirectangular, args) = graph.op(args[0]) else { return None };

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
-use crate::desc::{ColorSpace, ImageDesc, PixelData};
+use crate::desc::{Blending, ColorSpace, ImageDesc, PixelData};
 use crate::math::DVec3;
 
 /// How an image of an environment is laid out. All are seen along −z from +z, up is +y, as any camera of
@@ -71,6 +71,7 @@ pub(super) fn to_lat_long(source: &ImageDesc, layout: Layout) -> ImageDesc {
         height: height as u32,
         channels: 3,
         color_space: ColorSpace::Linear,
+        blending: Blending::default(),
         pixels: PixelData::F32(pixels),
     }
 }
@@ -141,6 +142,7 @@ mod tests {
                 height: height as u32,
                 channels: 3,
                 color_space: ColorSpace::Linear,
+                blending: Blending::default(),
                 pixels: PixelData::F32(pixels),
             };
             let image = to_lat_long(&source, layout);

@@ -31,7 +31,7 @@ pub(super) fn of(values: &Values<'_>, flat: bool, profiles: &mut Profiles) -> (S
     }
     let ies = values.asset("inputs:shaping:ies:file").and_then(|file| profiles.load(values, &file));
     let (ies, factor) = ies.map_or((None, 1.0), |(ies, factor)| (Some(ies), factor));
-    (ShapingDesc { cone, focus, focus_tint, ies }, factor)
+    (ShapingDesc { cone, focus, focus_tint, ies, shader: None }, factor)
 }
 
 /// The cone; `None` where it takes nothing away.

@@ -146,7 +146,7 @@ fn mean_of(image: &ImageDesc) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::desc::PixelData;
+    use crate::desc::{Blending, PixelData};
     use crate::error::Place;
 
     #[test]
@@ -158,6 +158,7 @@ mod tests {
             height: 1,
             channels,
             color_space,
+            blending: Blending::default(),
             pixels: PixelData::U8(bytes),
         };
         let close = |a: Value, b: Value| assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6), "{a:?}");

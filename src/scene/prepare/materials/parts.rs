@@ -112,6 +112,7 @@ impl Builder<'_> {
         let sheen = desc.sheen.as_ref().filter(|sheen| sheen.color.factor.iter().any(|&c| c > 0.0));
         let surface = Surface {
             base_color: self.color(inputs, &desc.base_color),
+            gains: desc.unbounded,
             metallic: self.scalar(inputs, &desc.metallic),
             metal_edge: self.color(inputs, &desc.metal_edge),
             diffuse_roughness: self.scalar(inputs, &desc.diffuse_roughness),

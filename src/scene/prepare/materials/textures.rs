@@ -10,7 +10,7 @@ use crate::scene::prepare::cache::{Cache, ReadyImage};
 use crate::scene::prepare::graphs;
 use crate::texture::{Image, Texture, TextureRef};
 
-/// Pyramids of the images that materials in use and domes look up, in parallel.
+/// Pyramids of the images that materials in use, domes and lamps look up, in parallel.
 pub(super) fn images(
     desc: &mut SceneDesc,
     used: &[bool],
@@ -27,6 +27,11 @@ pub(super) fn images(
     }
     for shader in &desc.dome_shaders {
         for texture in graphs::looked_up(&shader.graph, [shader.radiance]) {
+            wanted[desc.textures[texture as usize].image as usize] = true;
+        }
+    }
+    for shader in &desc.lamp_shaders {
+        for texture in graphs::looked_up(&shader.graph, [shader.factor]) {
             wanted[desc.textures[texture as usize].image as usize] = true;
         }
     }
