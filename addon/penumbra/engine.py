@@ -77,11 +77,13 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self._fill(view_layer, picture)
 
     def _motion(self, depsgraph):
-        """What gathers the motion of a picture with motion blur; None for one without."""
-        scene = depsgraph.scene_eval
-        if self.is_preview or not motion.is_on(scene, depsgraph.view_layer_eval):
+        """What gathers the motion of a picture that is blurred, or has the vector pass; None for others."""
+        scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+        if self.is_preview:
             return None
-        return motion.Motion(scene, self.frame_set, self.test_break)
+        if motion.is_on(scene, layer):
+            return motion.Motion(scene, self.frame_set, self.test_break)
+        return motion.Vectors(scene, self.frame_set, self.test_break) if layer.use_pass_vector else None
 
     def _settings(self, scene, view_layer):
         """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""

@@ -213,12 +213,14 @@ class _Passes(_Panel):
                     column.prop(layer.penumbra, f"use_pass_{name}", text=text)
                 elif passes.is_known(f"use_pass_{name}"):
                     column.prop(layer, f"use_pass_{name}", text=text)
+                elif passes.has_box_of_cycles(name, layer):
+                    column.prop(layer.cycles, f"use_pass_{name}", text=text)
 
 
 class PENUMBRA_PT_passes_shadow(_Passes, bpy.types.Panel):
     bl_label = "Shadow and Occlusion"
     BOXES = (("Include", (("shadow", "Shadow"), ("unshadowed", "Diffuse Direct Unshadowed"),
-                          ("ambient_occlusion", "Ambient Occlusion"))),)
+                          ("ambient_occlusion", "Ambient Occlusion"), ("shadow_catcher", "Shadow Catcher"))),)
 
 
 class PENUMBRA_PT_passes_data(_Passes, bpy.types.Panel):

@@ -122,6 +122,29 @@ impl Camera {
         }
     }
 
+    /// How far `p` is from the camera; along the axis where rays are parallel.
+    pub fn distance(&self, p: Vec3) -> f32 {
+        match &self.projection {
+            Projection::Orthographic(camera) => camera.view.depth(p).abs(),
+            _ => (p - self.view().origin).length(),
+        }
+    }
+
+    /// Where `p` stands in the whole picture: pixels from the left and from below.
+    pub fn raster(&self, p: Vec3) -> [f32; 2] {
+        let ([x, y], [width, height]) = (self.window(p), self.size());
+        [x * width, y * height]
+    }
+
+    /// Size of the whole picture in pixels.
+    fn size(&self) -> [f32; 2] {
+        match &self.projection {
+            Projection::Perspective(camera) => camera.size,
+            Projection::Orthographic(camera) => camera.size,
+            Projection::Panorama(camera) => camera.size,
+        }
+    }
+
     /// Where `p` stands in the picture: 0 to 1 from the left and from below.
     pub fn window(&self, p: Vec3) -> [f32; 2] {
         match &self.projection {

@@ -12,6 +12,7 @@ mod instance;
 mod interaction;
 mod material;
 mod media;
+mod mist;
 mod path_state;
 mod prepare;
 mod shading;
@@ -20,6 +21,7 @@ mod spot;
 mod surroundings;
 mod terminator;
 mod trace;
+mod vectors;
 
 pub use blur::Blur;
 pub use effects::Effects;
@@ -28,10 +30,12 @@ pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::{Coverage, Material};
 pub use media::{Interior, Media};
+pub use mist::Mist;
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use terminator::Terminator;
 pub use trace::RayCone;
+pub use vectors::Vectors;
 
 use std::sync::Arc;
 
@@ -74,6 +78,10 @@ pub struct Scene {
     pub max_transparent: u32,
     /// Opacity from which on a surface is what the data passes show.
     pub pass_alpha_threshold: f32,
+    /// What the mist pass shows.
+    pub mist: Mist,
+    /// What the vector pass compares the frame with; `None` where it is not rendered.
+    pub vectors: Option<Vectors>,
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,

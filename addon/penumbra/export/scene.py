@@ -67,7 +67,7 @@ class Exporter:
     def export(self, depsgraph, size, camera_object=None, space=None, motion=None):
         """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows.
 
-        `motion` gathers what moves while the shutter is open.
+        `motion` gathers what moves while the shutter is open, or from frame to frame.
         """
         self._motion = motion
         self._layer = depsgraph.view_layer

@@ -73,7 +73,7 @@ pub fn tangents_of(uv_map: &str) -> String {
 impl NamedMesh {
     /// Takes in where its points are at other times of the shutter. Points that move out of number or whose count
     /// changes are told, and stand still.
-    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], warnings: &mut Warnings) {
+    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], blurred: bool, warnings: &mut Warnings) {
         self.dressed = None;
         let mesh = Arc::make_mut(&mut self.mesh);
         let count = mesh.points.len();
@@ -83,7 +83,7 @@ impl NamedMesh {
         mesh.motion = if moved.iter().all(|moved| fits(moved) && finite(moved)) {
             motion::keys(&mesh.points, moved.iter().map(points))
         } else {
-            motion::tell_of_still(&mesh.name, &mesh.place, moved.iter().all(fits), warnings);
+            motion::tell_of_still(&mesh.name, &mesh.place, moved.iter().all(fits), blurred, warnings);
             Vec::new()
         };
     }

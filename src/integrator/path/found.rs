@@ -21,12 +21,13 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sampl
             None if light.rules.seen.camera => {
                 let l = path.unscattered(le);
                 sample.emission += l;
-                sample.denoising_albedo += le;
+                path.tell_denoiser(l, sample);
                 add_unscattered(sample, &light.rules, l);
             }
             None => {}
             Some(last) => {
                 let le = le * last.mis_weight(scene, i, wi, Some(hit));
+                path.tell_denoiser(path.beta * le, sample);
                 path.add_found(last, &light.rules, le, sample);
             }
         }
@@ -46,6 +47,7 @@ pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelS
             None if light.rules.seen.camera => {
                 let l = path.unscattered(le);
                 sample.environment += l;
+                path.tell_denoiser(l, sample);
                 if !scene.film_transparent {
                     add_unscattered(sample, &light.rules, l);
                 }
@@ -53,6 +55,7 @@ pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelS
             None => {}
             Some(last) => {
                 let le = le * last.mis_weight(scene, i, path.ray.d, None);
+                path.tell_denoiser(path.beta * le, sample);
                 path.add_found(last, &light.rules, le, sample);
             }
         }
@@ -71,10 +74,14 @@ pub(super) fn add_emission(scene: &Scene, path: &Path<'_>, it: &Interaction, opa
         None => {
             let l = path.unscattered(le);
             sample.emission += l;
-            sample.denoising_albedo += le;
+            path.tell_denoiser(l, sample);
             add_unscattered(sample, rules, l);
         }
-        Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
+        Some(last) => {
+            let le = le * mesh_weight(scene, last, it);
+            path.tell_denoiser(path.beta * le, sample);
+            path.add_found(last, rules, le, sample);
+        }
     }
 }
 
@@ -82,6 +89,13 @@ impl Path<'_> {
     /// What the camera sees of radiance `le` that nothing has scattered.
     fn unscattered(&self, le: Rgb) -> Rgb {
         self.limits.clamp(self.beta * le, 0)
+    }
+
+    /// What shines where a denoiser's albedo is still looked for, with radiance `l` in the picture, is part of it.
+    fn tell_denoiser(&self, l: Rgb, sample: &mut PixelSample) {
+        if let Some(look) = &self.look {
+            sample.denoising_albedo += look.throughput * l;
+        }
     }
 
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS

@@ -105,7 +105,7 @@ pub fn prepare(
 }
 
 /// `desc` as it stands at the frame.
-fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
+pub(super) fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
     let rigid = rigid(&desc.transform);
     let axes = rigid.matrix3;
     let view = camera::View {

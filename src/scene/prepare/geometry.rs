@@ -122,7 +122,7 @@ fn relative(points: &[[f32; 3]], center: DVec3) -> impl Iterator<Item = Vec3> {
 }
 
 /// Keys of points that move, relative to `center`; `None` for those that do not.
-fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
+pub(super) fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
     let keys = keys?;
     let times = Times::new(keys.iter().map(|key| key.0).collect())?;
     Some((times, keys.iter().map(|(_, points)| relative(points, center).collect()).collect()))
