@@ -51,6 +51,11 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         size = [max(int(n * scale), 1) for n in (scene.render.resolution_x, scene.render.resolution_y)]
         if scene.camera is None and self.camera_override is None:
             raise ValueError("the scene has no camera: add one, or make one the scene's camera")
+        if scene.render.use_multiview:
+            raise ValueError(
+                "stereo pictures are not rendered: turn Stereoscopy off in the output properties, and render each view by"
+                " its own camera"
+            )
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
         exporter.export(depsgraph, size, self.camera_override, motion=self._motion(depsgraph))

@@ -5,12 +5,14 @@ mod motion;
 mod orthographic;
 mod panorama;
 mod perspective;
+mod shutter;
 
 pub use lens::Lens;
 pub use motion::CameraMotion;
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;
+pub use shutter::Exposure;
 
 use crate::math::{Frame, Ray, Vec3};
 
@@ -134,6 +136,11 @@ impl Camera {
     pub fn raster(&self, p: Vec3) -> [f32; 2] {
         let ([x, y], [width, height]) = (self.window(p), self.size());
         [x * width, y * height]
+    }
+
+    /// How far `y`, in pixels from the top of what is rendered, is down the whole picture: 0 to 1.
+    pub fn down(&self, y: f32) -> f32 {
+        (y + self.corner[1]) / self.size()[1]
     }
 
     /// Size of the whole picture in pixels.

@@ -9,10 +9,17 @@ use crate::scene::{Interaction, RayCone, Scene, mask};
 const MIDDLE: f32 = 0.5;
 
 /// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first, in the middle of
-/// the shutter.
+/// the shutter, or of what of it the pixel's row has.
 pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
-    let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    let ray = Ray { time: MIDDLE, ..camera_ray.ray };
+    let (at_x, at_y) = (x as f32 + 0.5, y as f32 + 0.5);
+    let ray = match &scene.camera_motion {
+        Some(motion) if scene.times.is_rolling() => {
+            let time = scene.time_of_row(y, MIDDLE);
+            Ray { time, ..motion.at(&scene.camera, time).ray(at_x, at_y).ray }
+        }
+        _ if scene.times.is_rolling() => Ray { time: scene.time_of_row(y, MIDDLE), ..scene.camera.ray(at_x, at_y).ray },
+        _ => Ray { time: MIDDLE, ..scene.camera.ray(at_x, at_y).ray },
+    };
     let Some(it) = first_opaque(scene, ray) else { return FirstHit::BACKGROUND };
     FirstHit {
         depth: scene.camera.depth(it.p),

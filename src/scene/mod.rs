@@ -43,7 +43,7 @@ use aovs::BackgroundAovs;
 use asked::Asked;
 
 use crate::bvh::Bvh;
-use crate::camera::{Camera, CameraMotion, CameraRay};
+use crate::camera::{Camera, CameraMotion, CameraRay, Exposure};
 use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
@@ -56,6 +56,8 @@ pub struct Scene {
     pub camera: Camera,
     /// How it moves while the shutter is open.
     pub camera_motion: Option<CameraMotion>,
+    /// When rays see it.
+    pub times: Exposure,
     /// Factor of all radiance in the picture.
     pub exposure: f32,
     /// Width and height of the picture in pixels.
@@ -112,6 +114,11 @@ impl Scene {
         };
         found.ray.time = time;
         found
+    }
+
+    /// When a ray of pixels of row `y` from the top sees the scene, by a uniform `u`.
+    pub fn time_of_row(&self, y: u32, u: f32) -> f32 {
+        self.times.time(u, self.camera.down(y as f32 + 0.5))
     }
 
     /// The shape of `instance`.

@@ -31,6 +31,7 @@ use super::framing::world_bounds;
 use super::shutter::Shutter;
 use super::surroundings::Surroundings;
 use super::{Effects, Ids, Mist, Scene};
+use crate::camera::Exposure;
 use crate::desc::{
     self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, TerminatorDesc, Visibility,
 };
@@ -142,6 +143,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let scene = Scene {
         camera,
         camera_motion,
+        times: Exposure::new(&camera_desc.shutter_curve, camera_desc.rolling_shutter),
         exposure: camera::exposure(&camera_desc),
         size,
         origin,
@@ -190,6 +192,7 @@ impl Scene {
         if let Some(vectors) = &mut self.vectors {
             vectors.cameras = vectors::cameras(&camera, render, whole, self.origin);
         }
+        self.times = Exposure::new(&camera.shutter_curve, camera.rolling_shutter);
         self.exposure = camera::exposure(&camera);
         Ok(())
     }

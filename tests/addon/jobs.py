@@ -315,7 +315,7 @@ def left_out(folder):
     """What a scene may ask for that there is not yet, each told."""
     _scene()
     layer = bpy.context.view_layer
-    layer.use_pass_mist = layer.cycles.use_pass_shadow_catcher = True
+    layer.cycles.use_pass_volume_direct = True
     material = bpy.data.materials.new("Displaced")
     material.use_nodes = True
     tree = material.node_tree

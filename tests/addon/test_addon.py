@@ -133,7 +133,7 @@ def test_a_noise_target_ends_a_render(blender, tmp_path):
 
 def test_what_is_left_out_is_told(blender, tmp_path):
     _, output = blender.run("left_out", tmp_path)
-    for words in ("the pass Mist is not rendered", "the pass Shadow Catcher is not rendered",
+    for words in ("the pass Volume Direct is not rendered",
                   "displacement is not rendered", 'the attribute "mine" is one of OBJECT'):
         assert words in output, words
 

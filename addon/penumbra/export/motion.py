@@ -39,7 +39,7 @@ class Motion:
         self._points = {}
         # What is placed at other times: [(frames after the frame, indices, matrices)].
         self._moved = []
-        self.warnings = self._not_rendered()
+        self.warnings = set()
 
     @property
     def shutter(self):
@@ -49,8 +49,16 @@ class Motion:
     # What is told of a camera whose lens changes.
     ZOOM = "the camera zooms while the shutter is open: that is not blurred"
 
-    def _not_rendered(self):
-        return _not_rendered(self._scene)
+    def exposure(self):
+        """What the document says of how the picture is exposed while the shutter is open."""
+        result = {"shutter": self.shutter}
+        curve = _opening(self._scene.render.motion_blur_shutter_curve)
+        if max(curve) != min(curve):
+            result["shutter_curve"] = curve
+        cycles = getattr(self._scene, "cycles", None)
+        if getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
+            result["rolling_shutter"] = cycles.rolling_shutter_duration
+        return result
 
     def _times(self, obj, parent):
         """Times of an object's keys."""
@@ -174,13 +182,9 @@ class Vectors(Motion):
         super().__init__(scene, frame_set, stopped)
         self._length, self._at_frame = 2.0, 0.5
 
-    @property
-    def shutter(self):
-        """It is open for an instant."""
-        return [0.0, 0.0]
-
-    def _not_rendered(self):
-        return set()
+    def exposure(self):
+        """The shutter is open for an instant."""
+        return {}
 
     def _times(self, obj, parent):
         return _FRAMES
@@ -230,12 +234,12 @@ def _points(instance, modifier, render):
         obj.to_mesh_clear()
 
 
-def _not_rendered(scene):
-    """Settings of motion blur that make no difference, as messages."""
-    told = set()
-    curve = scene.render.motion_blur_shutter_curve.curves[0]
-    if len({point.location.y for point in curve.points}) > 1:
-        told.add("the shutter curve is not flat: the shutter is taken to be wide open for all of its time")
-    if getattr(getattr(scene, "cycles", None), "rolling_shutter_type", "NONE") != "NONE":
-        told.add("the rolling shutter is not rendered: all of the picture is exposed at once")
-    return told
+# Cycles looks a shutter's curve up at so many times.
+_LOOKUPS = 256
+
+
+def _opening(mapping):
+    """How far a shutter is open, from its opening to its closing at even steps."""
+    mapping.update()
+    curve = mapping.curves[0]
+    return [mapping.evaluate(curve, i / (_LOOKUPS - 1)) for i in range(_LOOKUPS)]

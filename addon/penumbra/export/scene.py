@@ -124,7 +124,7 @@ class Exporter:
             "objects": self._objects,
         }
         if motion is not None:
-            document["render"]["shutter"] = motion.shutter
+            document["render"].update(motion.exposure())
             of_camera = motion.gather(depsgraph, through, lamps)
             if document["camera"] is not None:
                 document["camera"]["motion"] = of_camera
@@ -155,8 +155,10 @@ class Exporter:
         try:
             return json.dumps(document, allow_nan=False)
         except ValueError:
-            self.warnings.append("some properties are not finite numbers; 0 is used for them")
-            return json.dumps(_finite(document))
+            found = {}
+            finite = _finite(document, (), found)
+            self.warnings += [f"{where}: {', '.join(sorted(names))}: not finite; 0 is used" for where, names in found.items()]
+            return json.dumps(finite)
 
     def _object(self, obj):
         """Index of the object's record; nothing for one without a shape."""
@@ -347,13 +349,19 @@ def _shown(instance, space):
     return obj.original.visible_in_viewport_get(space)
 
 
-def _finite(value):
-    """`value` with 0 for every number that is not finite."""
+def _finite(value, where, found):
+    """`value` with 0 for every number that is not finite.
+
+    `where` it stands are names, the last one that of a property; `found` gets the properties by what they belong to.
+    """
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        named = (*where[:-1], value["name"]) if isinstance(value.get("name"), str) else where
+        return {key: _finite(item, (*named, key), found) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
+        return [_finite(item, where, found) for item in value]
     if isinstance(value, float) and not np.isfinite(value):
+        *holders, name = where
+        found.setdefault(" > ".join(holder for holder in holders if holder != "nodes") or "scene", set()).add(name)
         return 0.0
     return value
 

@@ -59,16 +59,21 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
         shift: [data.shift_x / frame[0], data.shift_y / frame[1]],
         lens,
         shutter: render.shutter,
+        shutter_curve: render.shutter_curve.clone(),
+        rolling_shutter: render.rolling_shutter,
         exposure: render.exposure,
         motion: motion::keys(&transform, data.motion.iter().map(|(time, matrix)| (*time, affine(matrix)))),
     }
 }
 
+/// Cycles takes no lens to be wider open.
+const LEAST_FSTOP: f64 = 1e-5;
+
 /// The lens of a focal length in millimetres; parallel rays have that of a metre.
 pub(super) fn lens(dof: &DofData, focal: f64, orthographic: bool) -> LensDesc {
     let focal = if orthographic { 1.0 } else { 1e-3 * focal };
     LensDesc {
-        aperture_radius: focal / (2.0 * dof.fstop),
+        aperture_radius: focal / (2.0 * dof.fstop.max(LEAST_FSTOP)),
         focus_distance: dof.distance,
         blades: dof.blades,
         rotation: dof.rotation,
@@ -116,5 +121,8 @@ mod tests {
         let lens = made(CameraData { dof, ..CameraData::default() }, [100, 100]).lens.unwrap();
         assert!((lens.aperture_radius - 0.05 / 5.6).abs() < 1e-12);
         assert_eq!(lens.focus_distance, 3.0);
+        let open = Some(DofData { distance: 3.0, fstop: 0.0, ..DofData::default() });
+        let lens = made(CameraData { dof: open, ..CameraData::default() }, [100, 100]).lens.unwrap();
+        assert!((lens.aperture_radius - 2500.0).abs() < 1e-6);
     }
 }

@@ -8,9 +8,14 @@ use super::motion::{self, MovedPoints};
 use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::tangents;
+use crate::math::Cluster;
 
 /// Nothing can be computed with a vertex that is farther out: about where `f32` can't hold squares any more.
 const REACH: f32 = 1e18;
+
+/// Triangles to a vertex that is so many times farther off than most would be met where they are not: `f32` has seven
+/// digits.
+const MOST_SPREADS: f64 = 1e8;
 
 /// The arrays of an evaluated mesh, as `foreach_get` fills them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -133,8 +138,8 @@ impl NamedMesh {
 /// The mesh of `arrays`, with UV maps, colour attributes, and other attributes as colors, too.
 ///
 /// # Errors
-/// Arrays whose lengths or indices don't fit together. Vertices that are not finite or beyond
-/// [`REACH`] are told, and the triangles at them left out.
+/// Arrays whose lengths or indices don't fit together. Vertices that are not finite, beyond
+/// [`REACH`], or [`MOST_SPREADS`] away from most are told, and the triangles at them left out.
 pub fn mesh(
     name: &str,
     place: &Place,
@@ -156,7 +161,10 @@ pub fn mesh(
         return Err(broken(format!("refers to corner {index} of {corners}")));
     }
     // So that those beyond reach are left out of every box, too.
-    let within = |p: &[f32; 3]| p.map(|x| if x.abs() > REACH { f32::NAN } else { x });
+    let most = Cluster::of(arrays.positions.as_chunks::<3>().0).filter(|most| most.spread > 0.0);
+    let is_far = |p: &[f32; 3]| most.is_some_and(|most| most.distance(*p) > MOST_SPREADS);
+    let within =
+        |p: &[f32; 3]| if is_far(p) { [f32::NAN; 3] } else { p.map(|x| if x.abs() > REACH { f32::NAN } else { x }) };
     let positions: Vec<[f32; 3]> = arrays.positions.as_chunks::<3>().0.par_iter().map(within).collect();
     let corners_of: &[[i32; 3]] = arrays.triangles.as_chunks::<3>().0;
     let vertex = |corner: i32| arrays.corner_verts[corner as usize] as u32;

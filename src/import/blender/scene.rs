@@ -270,9 +270,9 @@ impl BlenderScene {
                 shape,
                 transform,
                 motion: self.moved.of(number as u32, &transform),
-                materials: match (data.materials.as_slice(), default) {
-                    ([], Some(_)) => vec![default],
-                    (slots, _) => slots.iter().map(|slot| slot.or(default)).collect(),
+                materials: match data.materials.as_slice() {
+                    [] => vec![Some(default)],
+                    slots => slots.iter().map(|slot| Some(slot.unwrap_or(default))).collect(),
                 },
                 object_index: data.pass_index,
                 color: None,

@@ -374,6 +374,8 @@ impl Builder<'_> {
                 shift: [0.0; 2],
                 lens: None,
                 shutter: [0.0; 2],
+                shutter_curve: Vec::new(),
+                rolling_shutter: None,
                 exposure: 1.0,
                 motion: Vec::new(),
             }),

@@ -200,6 +200,8 @@ mod tests {
             shift,
             lens: None,
             shutter: [0.0; 2],
+            shutter_curve: Vec::new(),
+            rolling_shutter: None,
             exposure: 1.0,
             motion: Vec::new(),
         }

@@ -1,0 +1,69 @@
+"""Data passes, pixel by pixel as Cycles has them."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OpenImageIO")
+
+from test_addon import read  # noqa: E402  (it needs OpenImageIO)
+
+
+def _layer(path, name, channels):
+    layers = read(path)
+    return np.dstack([layers[f"ViewLayer.{name}.{c}"] for c in channels])
+
+
+def _both(blender, folder, scene, boxes, spp, layer, channels, *arguments):
+    """(Cycles', Penumbra's) pixels of a layer, and what Blender printed."""
+    paths, output = blender.run("passes_of_both", scene, folder, boxes, spp, *arguments)
+    return [_layer(path, layer, channels) for path in paths], output
+
+
+def _assert_alike(expected, found, tolerance, most_off, what):
+    """All pixels are within `tolerance` but for a share `most_off`: those at edges, which are noise of few samples."""
+    off = np.abs(found - expected).max(axis=2) > tolerance
+    assert off.mean() <= most_off, (what, off.mean(), np.argwhere(off)[:5].tolist())
+
+
+@pytest.mark.parametrize(
+    ("falloff", "camera"),
+    [("LINEAR", "PERSP"), ("QUADRATIC", "PERSP"), ("INVERSE_QUADRATIC", "PERSP"), ("LINEAR", "ORTHO")],
+)
+def test_mist_is_that_of_cycles(blender, tmp_path, falloff, camera):
+    (expected, found), output = _both(blender, tmp_path, "fog", "Mist", 64, "Mist", "Z", falloff, camera)
+    assert "is not rendered" not in output
+    assert np.ptp(expected) > 0.5
+    _assert_alike(expected, found, 0.02, 0.06, falloff)
+    assert abs(found.mean() - expected.mean()) < 0.002
+
+
+@pytest.mark.parametrize("camera", ["PERSP", "ORTHO", "PANO"])
+def test_vectors_are_those_of_cycles(blender, tmp_path, camera):
+    (expected, found), output = _both(blender, tmp_path, "march", "Vector", 32, "Vector", "XYZW", camera)
+    assert "is not rendered" not in output and "Traceback" not in output
+    assert np.abs(expected).max() > 1.0
+    _assert_alike(expected, found, 0.03, 0.06, camera)
+
+
+def test_vectors_of_hair_are_those_of_cycles(blender, tmp_path):
+    (expected, found), _ = _both(blender, tmp_path, "lawn", "Vector", 32, "Vector", "XYZW")
+    assert np.abs(expected).max() > 1.0
+    _assert_alike(expected, found, 0.1, 0.1, "hair")
+
+
+@pytest.mark.parametrize("transparent", ["on", "off"])
+def test_shadow_catchers_have_the_pass_of_cycles(blender, tmp_path, transparent):
+    (expected, found), _ = _both(blender, tmp_path, "catcher", "Shadow Catcher", 256, "Shadow Catcher", "RGB", transparent)
+    assert expected.min() < 0.5
+    noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
+    assert abs(found.mean() - expected.mean()) < 0.002 + 4.0 * noise
+    _assert_alike(expected, found, 0.15, 0.06, transparent)
+
+
+@pytest.mark.parametrize(("layer", "channels"), [("Normal", "XYZ"), ("Albedo", "RGB"), ("Depth", "Z")])
+def test_a_denoiser_is_told_what_cycles_tells(blender, tmp_path, layer, channels):
+    (expected, found), _ = _both(blender, tmp_path, "mirrors", "Denoising", 128, f"Denoising {layer}", channels)
+    scale = np.abs(expected).max()
+    noise = np.std(found - expected, axis=(0, 1)) / np.sqrt(expected[..., 0].size)
+    assert (np.abs(found - expected).mean(axis=(0, 1)) < 0.02 * scale).all()
+    assert (np.abs((found - expected).mean(axis=(0, 1))) <= 0.002 * scale + 4.0 * noise).all()
