@@ -6,12 +6,13 @@ import os
 import bpy
 
 import scenes
-from jobs import _render
+from jobs import _complaint, _render, _room, _scene
 
 # Check boxes by the name of a pass: of the view layer, of Cycles' own settings, and Penumbra's.
 _BOXES = {
     "Mist": (("layer", "use_pass_mist"),),
     "Vector": (("layer", "use_pass_vector"),),
+    "Cryptomatte": (("layer", "use_pass_cryptomatte_material"),),
     "Shadow Catcher": (("cycles", "use_pass_shadow_catcher"),),
     "Denoising": (("cycles", "denoising_store_passes"), ("penumbra", "use_pass_denoising_normal"),
                   ("penumbra", "use_pass_denoising_albedo"), ("penumbra", "use_pass_denoising_depth")),
@@ -142,3 +143,73 @@ def mirrors():
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0.0, 2.0, 1.5), rotation=(1.4, 0.0, 0.0))
     bpy.context.object.data.materials.append(scenes.material("Lit", "ShaderNodeEmission", Color=(1.0, 0.9, 0.5, 1.0), Strength=2.0))
     scenes.lamp("POINT", (1.2, -0.8, 4.0), energy=100.0, shadow_soft_size=0.3)
+
+
+def sweeping(curve, rolling):
+    """A glowing square that crosses the picture while a shutter opens and closes, row by row or at once."""
+    scene = bpy.context.scene
+    bpy.ops.mesh.primitive_plane_add(size=3.0)
+    square = bpy.context.object
+    square.data.materials.append(scenes.material("Lit", "ShaderNodeEmission", Strength=1.0))
+    camera = scenes.add("Camera", bpy.data.cameras.new("Camera"), location=(0.0, 0.0, 10.0))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 8.0
+    scene.camera = camera
+    scenes.world(0.0)
+    _keyed(square, "location", (-2.0, 0.0, 0.0), (14.0, 0.0, 0.0))
+    for point in square.animation_data.action.fcurves if hasattr(square.animation_data.action, "fcurves") else ():
+        for key in point.keyframe_points:
+            key.interpolation = "LINEAR"
+    scene.frame_set(3)
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    if curve == "on":
+        mapping = scene.render.motion_blur_shutter_curve
+        for point, place in zip(mapping.curves[0].points, ((0.0, 0.1), (1.0, 1.0))):
+            point.location = place
+        mapping.curves[0].points.new(0.6, 0.2)
+        mapping.update()
+    if rolling != "off":
+        scene.cycles.rolling_shutter_type, scene.cycles.rolling_shutter_duration = "TOP", float(rolling)
+
+
+def march_blurred():
+    march()
+    bpy.context.scene.render.use_motion_blur = True
+
+
+def stereo(folder):
+    """A scene of two views."""
+    _scene().render.use_multiview = True
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
+def not_finite(folder):
+    """A lamp and a node whose values are no numbers."""
+    _scene(spp=1)
+    _room()
+    bpy.data.lights["Area"].energy = float("inf")
+    wood = scenes.material("Wood")
+    mapping = wood.node_tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Location"].default_value[0] = float("nan")
+    shader = next(node for node in wood.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    wood.node_tree.links.new(mapping.outputs[0], shader.inputs["Base Color"])
+    bpy.data.objects["Cube"].data.materials.append(wood)
+    _render(os.path.join(folder, "not_finite.exr"))
+
+
+def bare():
+    """A cube without material on a floor with one."""
+    scenes.room()
+    bpy.data.objects["Cube"].data.materials.clear()
+    scenes.world(1.0)
+
+
+def through(kind):
+    """A lamp or an empty mesh in place of the camera."""
+    scenes.room()
+    old = bpy.context.scene.camera
+    place = {"location": old.location.copy(), "rotation_euler": old.rotation_euler.copy()}
+    data = bpy.data.meshes.new("Eye") if kind == "MESH" else bpy.data.lights.new("Eye", kind)
+    if kind == "SPOT":
+        data.spot_size = 1.2
+    bpy.context.scene.camera = scenes.add("Eye", data, **place)
+    scenes.lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)

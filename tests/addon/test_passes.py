@@ -68,3 +68,46 @@ def test_a_denoiser_is_told_what_cycles_tells(blender, tmp_path, layer, channels
     noise = np.std(found - expected, axis=(0, 1)) / np.sqrt(expected[..., 0].size)
     assert (np.abs(found - expected).mean(axis=(0, 1)) < 0.02 * scale).all()
     assert (np.abs((found - expected).mean(axis=(0, 1))) <= 0.002 * scale + 4.0 * noise).all()
+
+
+@pytest.mark.parametrize(("curve", "rolling"), [("off", "off"), ("on", "off"), ("off", "0.0"), ("off", "0.4"), ("on", "0.4")])
+def test_shutters_expose_as_those_of_cycles(blender, tmp_path, curve, rolling):
+    (expected, found), output = _both(blender, tmp_path, "sweeping", "Mist", 512, "Combined", "R", curve, rolling)
+    assert "not rendered" not in output
+    assert 0.1 < expected.max() <= 1.0 and np.ptp(expected) > 0.5
+    _assert_alike(expected, found, 0.06, 0.02, (curve, rolling))
+    assert abs(found.mean() - expected.mean()) < 0.003
+
+
+def test_stereo_is_refused(blender, tmp_path):
+    said, output = blender.run("stereo", tmp_path)
+    assert "stereo pictures are not rendered" in said + output and "Traceback" not in output
+
+
+def test_with_motion_blur_there_are_no_vectors(blender, tmp_path):
+    paths, output = blender.run("passes_of_both", "march_blurred", tmp_path, "Vector", 4)
+    for path in paths:
+        layers = read(path)
+        assert all(np.abs(layers.get(f"ViewLayer.Vector.{c}", np.zeros(1))).max() == 0.0 for c in "XYZW")
+    assert "the vector pass is of pictures without motion blur" in output
+
+
+def test_what_is_not_finite_is_named(blender, tmp_path):
+    _, output = blender.run("not_finite", tmp_path)
+    assert "Area: energy: not finite; 0 is used" in output, output[-2000:]
+    assert "Wood > Shader Nodetree > Mapping > Location: value: not finite; 0 is used" in output, output[-2000:]
+
+
+def test_what_has_no_material_is_named_as_by_cycles(blender, tmp_path):
+    paths, _ = blender.run("passes_of_both", "bare", tmp_path, "Cryptomatte", 16)
+    cycles, ours = [read(path)["ViewLayer.CryptoMaterial00.r"] for path in paths]
+    assert len(np.unique(cycles)) > 2
+    assert np.mean(cycles == ours) > 0.95
+
+
+@pytest.mark.parametrize("kind", ["SPOT", "POINT", "MESH"])
+def test_anything_can_be_looked_through_as_in_cycles(blender, tmp_path, kind):
+    (expected, found), output = _both(blender, tmp_path, "through", "Mist", 64, "Combined", "RGB", kind)
+    assert "no camera" not in output
+    assert expected.mean() > 0.05
+    _assert_alike(expected, found, 0.1 * expected.max(), 0.08, kind)

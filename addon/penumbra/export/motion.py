@@ -109,7 +109,7 @@ class Motion:
         in Cycles.
         """
         of_camera = []
-        has_camera = camera_object is not None and camera_object.type == "CAMERA"
+        has_camera = camera_object is not None
         camera_times = self._times(camera_object, None) if has_camera else frozenset()
         lens = camera.projection(camera_object.evaluated_get(depsgraph)) if has_camera else None
         times = set(camera_times).union(*(thing[-1] for thing in (*self._placed.values(), *self._shapes.values())))

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::desc::{InstanceDesc, Motion, SceneDesc, ShapeRef};
+use crate::desc::{InstanceDesc, MeshDesc, Motion, SceneDesc, ShapeRef};
 use crate::error::Place;
 use crate::math::DAffine3;
 
@@ -12,7 +12,7 @@ pub(super) fn add(scene: &mut SceneDesc, others: &[(f64, SceneDesc)]) {
     let found: Vec<Vec<Option<&InstanceDesc>>> = others.iter().map(|(_, other)| partners(scene, other)).collect();
     // Of meshes that deform, those at the other frames: nodes may share one at the frame itself alone.
     let mut taken: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
-    let mut has_motion = vec![false; scene.meshes.len()];
+    let mut is_taken = vec![false; scene.meshes.len()];
     for i in 0..scene.instances.len() {
         let Some(then) = found.iter().map(|found| found[i]).collect::<Option<Vec<_>>>() else { continue };
         let instance = &mut scene.instances[i];
@@ -21,10 +21,11 @@ pub(super) fn add(scene: &mut SceneDesc, others: &[(f64, SceneDesc)]) {
         let ShapeRef::Mesh(mesh) = instance.shape else { continue };
         let meshes: Vec<u32> = then.iter().filter_map(|then| mesh_of(then)).collect();
         let own = *taken.entry((mesh, meshes.clone())).or_insert_with(|| {
-            if !std::mem::replace(&mut has_motion[mesh as usize], true) {
+            if !std::mem::replace(&mut is_taken[mesh as usize], true) {
                 return mesh;
             }
-            scene.meshes.push(scene.meshes[mesh as usize].clone());
+            let own = MeshDesc { motion: Vec::new(), ..MeshDesc::clone(&scene.meshes[mesh as usize]) };
+            scene.meshes.push(own.into());
             scene.meshes.len() as u32 - 1
         });
         instance.shape = ShapeRef::Mesh(own);
