@@ -5,7 +5,7 @@ import traceback
 import bpy
 import penumbra
 
-from . import passes, properties
+from . import loaded, passes, properties
 from .export import Exporter, libraries, motion
 from .viewport import Viewport
 
@@ -46,6 +46,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             self.error_set(message)
 
     def _render(self, depsgraph):
+        loaded.check()
         scene, view_layer = depsgraph.scene, depsgraph.view_layer
         scale = scene.render.resolution_percentage / 100.0
         size = [max(int(n * scale), 1) for n in (scene.render.resolution_x, scene.render.resolution_y)]

@@ -157,6 +157,29 @@ class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
         column = layout.column()
         column.prop(render, "motion_blur_position", text="Position")
         column.prop(render, "motion_blur_shutter")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            column.separator()
+            column.prop(cycles, "rolling_shutter_type", text="Rolling Shutter")
+            duration = column.column()
+            duration.active = cycles.rolling_shutter_type != "NONE"
+            duration.prop(cycles, "rolling_shutter_duration")
+
+
+class PENUMBRA_PT_motion_blur_curve(_Panel, bpy.types.Panel):
+    bl_label = "Shutter Curve"
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_motion_blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.active = render.use_motion_blur
+        layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+        row = layout.row(align=True)
+        for shape, icon in (("SMOOTH", "SMOOTHCURVE"), ("ROUND", "SPHERECURVE"), ("ROOT", "ROOTCURVE"),
+                            ("SHARP", "SHARPCURVE"), ("LINE", "LINCURVE"), ("MAX", "NOCURVE")):
+            row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
 
 
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
@@ -291,6 +314,7 @@ PANELS = (
     PENUMBRA_PT_light_paths_caustics,
     PENUMBRA_PT_ambient_occlusion,
     PENUMBRA_PT_motion_blur,
+    PENUMBRA_PT_motion_blur_curve,
     PENUMBRA_PT_film,
     PENUMBRA_PT_performance,
     PENUMBRA_PT_passes,

@@ -74,6 +74,9 @@ pub fn from_bytes(
         scene::Builder { reader, base_dir, place, options, file_size: bytes.len(), moving }.build(warnings)
     };
     let Some(frame) = options.frame.filter(|_| !root.animations.is_empty()) else {
+        if options.vectors && !root.animations.is_empty() {
+            warnings.push(place, "the vector pass is asked for, but no frame is given: nothing moves");
+        }
         return build(&root, false, warnings);
     };
     let at = |frame: f64, moving: bool, warnings: &mut Warnings| {

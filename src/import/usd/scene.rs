@@ -58,12 +58,22 @@ fn aside(kind: &str) -> bool {
 /// is known only when all was seen. With `vectors` from the frame before to the frame after, too.
 fn gather(reading: &Reading<'_>, vectors: bool) -> Haul {
     let haul = crew::gather(reading, aside);
-    let frames = (vectors && !reading.time.is_earliest_time()).then_some([-1.0, 1.0]);
+    let frames = frames(reading, vectors);
     let spans = [shutter(reading, &haul), frames].into_iter().flatten();
     let Some(shutter) = spans.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else { return haul };
     reading.shutter.set(Some(shutter));
     reading.crew.borrow_mut().clear();
     crew::gather(reading, aside)
+}
+
+/// From the frame before to the frame after, for the vector pass.
+fn frames(reading: &Reading<'_>, vectors: bool) -> Option<[f64; 2]> {
+    if vectors && reading.time.is_earliest_time() {
+        let what = "the vector pass is asked for, but the stage has no startTimeCode, and no frame is given: nothing moves";
+        reading.warnings.borrow_mut().push(&reading.place, what);
+        return None;
+    }
+    vectors.then_some([-1.0, 1.0])
 }
 
 /// From when to when a camera's shutter is open, in time codes after the frame.
