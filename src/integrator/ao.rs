@@ -54,7 +54,7 @@ pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings
     sample.alpha = 1.0;
     super::first_hit::describe(scene, &it, &mut sample);
     if scene.effects.denoising {
-        super::path::tell_denoiser_of_first(scene, &frame, travelled, &mut sample);
+        super::path::tell_of_first(scene, &frame, travelled, &mut sample);
     }
     sample
 }

@@ -9,11 +9,10 @@ mod lights;
 mod next;
 mod scatter;
 
-pub use features::of_first as tell_denoiser_of_first;
+pub use features::tell_of_first;
 pub use next::{First, first_surface};
 
 use super::direct::Shading;
-
 use super::first_hit::{add_mist, describe, describe_shape};
 use super::limits::Limits;
 use super::scattering::Scattering;

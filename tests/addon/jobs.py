@@ -311,6 +311,21 @@ def empty_border(folder):
     return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
 
 
+def stereo(folder):
+    """A scene of two views."""
+    _scene().render.use_multiview = True
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
+def replaced_engine(folder):
+    """An engine that is not the one that was installed last."""
+    import penumbra
+
+    _scene()
+    penumbra.installed_as += "?"
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
 def left_out(folder):
     """What a scene may ask for that there is not yet, each told."""
     _scene()

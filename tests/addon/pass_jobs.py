@@ -3,10 +3,11 @@
 import math
 import os
 
+import bmesh
 import bpy
 
 import scenes
-from jobs import _complaint, _render, _room, _scene
+from jobs import _render, _room, _scene
 
 # Check boxes by the name of a pass: of the view layer, of Cycles' own settings, and Penumbra's.
 _BOXES = {
@@ -176,12 +177,6 @@ def march_blurred():
     bpy.context.scene.render.use_motion_blur = True
 
 
-def stereo(folder):
-    """A scene of two views."""
-    _scene().render.use_multiview = True
-    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
-
-
 def not_finite(folder):
     """A lamp and a node whose values are no numbers."""
     _scene(spp=1)
@@ -213,3 +208,24 @@ def through(kind):
         data.spot_size = 1.2
     bpy.context.scene.camera = scenes.add("Eye", data, **place)
     scenes.lamp("SUN", rotation=(0.5, 0.4, 0.0), energy=3.0, angle=0.1)
+
+
+def far_vertex(folder):
+    """A cube with a vertex a million kilometres off, and one without the faces there: paths of their pictures."""
+    scene = _scene(spp=16)
+    scene.view_layers[0].use_pass_z = True
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0.0, 0.0, 0.5))
+    obj = bpy.context.object
+    far, without = obj.data, obj.data.copy()
+    corner = next(vertex.index for vertex in far.vertices if vertex.co.x > 0.0 > vertex.co.z and vertex.co.y > 0.0)
+    far.vertices[corner].co.x = 1e9
+    edited = bmesh.new()
+    edited.from_mesh(without)
+    edited.verts.ensure_lookup_table()
+    bmesh.ops.delete(edited, geom=list(edited.verts[corner].link_faces), context="FACES_ONLY")
+    edited.to_mesh(without)
+    paths = []
+    for name, obj.data in (("far", far), ("without", without)):
+        paths.append(os.path.join(folder, f"{name}.exr"))
+        _render(paths[-1])
+    return paths

@@ -147,7 +147,8 @@ def test_an_animation_has_its_frames(blender, tmp_path):
 
 @pytest.mark.parametrize(
     ("job", "words"),
-    [("no_camera", "no camera"), ("empty_border", "too small"), ("raises", "division by zero")],
+    [("no_camera", "no camera"), ("empty_border", "too small"), ("raises", "division by zero"),
+     ("stereo", "stereo pictures are not rendered"), ("replaced_engine", "restart Blender")],
 )
 def test_what_is_wrong_is_said_in_blender(blender, tmp_path, job, words):
     said, output = blender.run(job, tmp_path)

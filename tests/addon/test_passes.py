@@ -79,11 +79,6 @@ def test_shutters_expose_as_those_of_cycles(blender, tmp_path, curve, rolling):
     assert abs(found.mean() - expected.mean()) < 0.003
 
 
-def test_stereo_is_refused(blender, tmp_path):
-    said, output = blender.run("stereo", tmp_path)
-    assert "stereo pictures are not rendered" in said + output and "Traceback" not in output
-
-
 def test_with_motion_blur_there_are_no_vectors(blender, tmp_path):
     paths, output = blender.run("passes_of_both", "march_blurred", tmp_path, "Vector", 4)
     for path in paths:
@@ -111,3 +106,11 @@ def test_anything_can_be_looked_through_as_in_cycles(blender, tmp_path, kind):
     assert "no camera" not in output
     assert expected.mean() > 0.05
     _assert_alike(expected, found, 0.1 * expected.max(), 0.08, kind)
+
+
+def test_faces_at_a_vertex_far_off_are_left_out_and_the_rest_is_there(blender, tmp_path):
+    paths, output = blender.run("far_vertex", tmp_path)
+    far, without = [_layer(path, "Depth", "Z") for path in paths]
+    assert (without < 1e9).mean() > 0.02
+    assert (np.abs(far - without) < 1e-3).mean() > 0.995
+    assert 'the mesh "Cube" has 1 vertices that are not finite or too far away; ' in output, output[-2000:]

@@ -69,7 +69,8 @@ fn gather(reading: &Reading<'_>, vectors: bool) -> Haul {
 /// From the frame before to the frame after, for the vector pass.
 fn frames(reading: &Reading<'_>, vectors: bool) -> Option<[f64; 2]> {
     if vectors && reading.time.is_earliest_time() {
-        let what = "the vector pass is asked for, but the stage has no startTimeCode, and no frame is given: nothing moves";
+        let what =
+            "the vector pass is asked for, but the stage has no startTimeCode, and no frame is given: nothing moves";
         reading.warnings.borrow_mut().push(&reading.place, what);
         return None;
     }

@@ -76,7 +76,7 @@ fn in_camera(scene: &Scene, n: Vec3) -> Vec3 {
 }
 
 /// Normal and distance of the first surface, whatever it is made of, `distance` from where the ray begins.
-pub fn of_first(scene: &Scene, frame: &Frame, distance: f32, sample: &mut PixelSample) {
+pub fn tell_of_first(scene: &Scene, frame: &Frame, distance: f32, sample: &mut PixelSample) {
     sample.denoising_normal = in_camera(scene, frame.n);
     sample.denoising_depth = distance;
 }

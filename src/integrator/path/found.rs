@@ -27,7 +27,6 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sampl
             None => {}
             Some(last) => {
                 let le = le * last.mis_weight(scene, i, wi, Some(hit));
-                path.tell_denoiser(path.beta * le, sample);
                 path.add_found(last, &light.rules, le, sample);
             }
         }
@@ -55,7 +54,6 @@ pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelS
             None => {}
             Some(last) => {
                 let le = le * last.mis_weight(scene, i, path.ray.d, None);
-                path.tell_denoiser(path.beta * le, sample);
                 path.add_found(last, &light.rules, le, sample);
             }
         }
@@ -77,11 +75,7 @@ pub(super) fn add_emission(scene: &Scene, path: &Path<'_>, it: &Interaction, opa
             path.tell_denoiser(l, sample);
             add_unscattered(sample, rules, l);
         }
-        Some(last) => {
-            let le = le * mesh_weight(scene, last, it);
-            path.tell_denoiser(path.beta * le, sample);
-            path.add_found(last, rules, le, sample);
-        }
+        Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
     }
 }
 
@@ -106,6 +100,7 @@ impl Path<'_> {
         }
         let l = seen(last.shares, rules) * (self.beta * le);
         let l = l * self.limits.factor(l.sum(), self.scatterings);
+        self.tell_denoiser(l.sum(), sample);
         if self.scatterings == 1 {
             add_direct(sample, rules, l);
         } else {

@@ -237,3 +237,23 @@ fn place(
         terminator: desc.terminator.unwrap_or(terminator).into(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_points_far_away_cost_the_others_no_digits() {
+        let near = |i: usize| [(i % 10) as f32 * 0.1 + 3.0, (i / 10) as f32 * 0.1, 0.25];
+        let mut points: Vec<[f32; 3]> = (0..100).map(near).collect();
+        let (middle, _) = centered(&points);
+        assert!((middle - DVec3::new(3.45, 0.45, 0.25)).length() < 1e-6, "{middle}");
+        points.push([1e7, 0.0, 0.0]);
+        let (center, relative) = centered(&points);
+        for (relative, point) in relative.zip(&points) {
+            let back = relative.as_dvec3() + center;
+            let exact = DVec3::from(point.map(f64::from));
+            assert!((back - exact).length() <= 1e-7 * exact.length(), "{back} instead of {exact}");
+        }
+    }
+}
