@@ -371,8 +371,19 @@ mod tests {
 
     #[test]
     fn triangles_at_a_vertex_beyond_reach_are_left_out_and_told() {
-        for (x, left) in [(1e30, 1), (-1e30, 1), (f32::INFINITY, 1), (1e17, 2)] {
-            let mut positions = POSITIONS;
+        let huge = POSITIONS.map(|x| 1e16 * x);
+        for (quad_of, x, left) in [
+            (POSITIONS, 1e30, 1),
+            (POSITIONS, -1e30, 1),
+            (POSITIONS, f32::INFINITY, 1),
+            // Farther off than all others by more than numbers can tell.
+            (POSITIONS, 1e10, 1),
+            (POSITIONS, 1e7, 2),
+            // As far off as the others.
+            (huge, 1e17, 2),
+            (huge, 1e19, 1),
+        ] {
+            let mut positions = quad_of;
             positions[3] = x;
             let (mesh, said) = built(&MeshArrays { positions: &positions, ..quad() }, &[]);
             assert_eq!(mesh.unwrap().mesh.triangles.len(), left, "{x}");

@@ -57,7 +57,7 @@ pub(super) fn look(
     // What passes unscattered is seen as in a mirror.
     let (passes, all) = (coverage.passes, weight + coverage.passes.mean());
     if all > 0.0 && 4.0 * rough_weight <= all {
-        look.throughput = look.throughput * (mirror + passes);
+        look.throughput *= mirror + passes;
         path.look = Some(look);
         return;
     }
