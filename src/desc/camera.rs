@@ -36,6 +36,8 @@ pub struct CameraDesc {
     pub exposure: f64,
     /// The transform at other times of the shutter, in the order of time.
     pub motion: Vec<Motion<DAffine3>>,
+    /// How it projects at the frames before and after where it zooms: what the vector pass asks.
+    pub zoom: Vec<Motion<ProjectionDesc>>,
 }
 
 /// A thin lens.

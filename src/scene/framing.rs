@@ -71,6 +71,7 @@ pub fn framing_camera(scene: &SceneDesc, aspect: f64) -> CameraDesc {
         shutter: [0.0; 2],
         shutter_curve: Vec::new(),
         rolling_shutter: None,
+        zoom: Vec::new(),
         exposure: 1.0,
         motion: Vec::new(),
     }

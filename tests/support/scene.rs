@@ -139,6 +139,7 @@ impl Builder {
             shutter: [0.0; 2],
             shutter_curve: Vec::new(),
             rolling_shutter: None,
+            zoom: Vec::new(),
             exposure: 1.0,
             motion: Vec::new(),
         });

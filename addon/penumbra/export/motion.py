@@ -39,15 +39,14 @@ class Motion:
         self._points = {}
         # What is placed at other times: [(frames after the frame, indices, matrices)].
         self._moved = []
+        # How the camera projects where it zooms: [[frames after the frame, names and values]].
+        self.zoom = []
         self.warnings = set()
 
     @property
     def shutter(self):
         """When it opens and closes, frames after the frame."""
         return [self._after(0.0), self._after(1.0)]
-
-    # What is told of a camera whose lens changes.
-    ZOOM = "the camera zooms while the shutter is open: that is not blurred"
 
     def exposure(self):
         """What the document says of how the picture is exposed while the shutter is open."""
@@ -126,10 +125,14 @@ class Motion:
                     now = camera_object.original.evaluated_get(depsgraph)
                     of_camera.append([self._after(share), [list(map(float, row)) for row in now.matrix_world]])
                     if camera.projection(now) != lens:
-                        self.warnings.add(self.ZOOM)
+                        self._note_zoom(self._after(share), now)
         finally:
             self._frame_set(self._frame, self._subframe)
         return of_camera
+
+    def _note_zoom(self, _after, _camera_object):
+        """The camera has another lens at a time."""
+        self.warnings.add("the camera zooms while the shutter is open: that is not blurred")
 
     def _go_to(self, after):
         time = self._frame + self._subframe + after
@@ -176,8 +179,6 @@ class Vectors(Motion):
     of motion blur.
     """
 
-    ZOOM = "the camera zooms from frame to frame: the vector pass does not hold that"
-
     def __init__(self, scene, frame_set, stopped):
         super().__init__(scene, frame_set, stopped)
         self._length, self._at_frame = 2.0, 0.5
@@ -185,6 +186,11 @@ class Vectors(Motion):
     def exposure(self):
         """The shutter is open for an instant."""
         return {}
+
+    def _note_zoom(self, after, camera_object):
+        kind = camera_object.data.type if camera_object.type == "CAMERA" else "PERSP"
+        if kind != "PANO":
+            self.zoom.append([after, {"type": kind, **camera.projection(camera_object)}])
 
     def _times(self, obj, parent):
         return _FRAMES

@@ -127,7 +127,7 @@ class Exporter:
             document["render"].update(motion.exposure())
             of_camera = motion.gather(depsgraph, through, lamps)
             if document["camera"] is not None:
-                document["camera"]["motion"] = of_camera
+                document["camera"].update(motion=of_camera, zoom=motion.zoom)
         self.scene.set_document(self._json(document))
         self.scene.set_materials(self._materials)
         self._known_materials &= set(self._materials)

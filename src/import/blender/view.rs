@@ -65,6 +65,7 @@ impl ViewData {
             shutter: [0.0; 2],
             shutter_curve: Vec::new(),
             rolling_shutter: None,
+            zoom: Vec::new(),
             exposure,
             motion: Vec::new(),
         }

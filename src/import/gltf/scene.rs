@@ -376,6 +376,7 @@ impl Builder<'_> {
                 shutter: [0.0; 2],
                 shutter_curve: Vec::new(),
                 rolling_shutter: None,
+                zoom: Vec::new(),
                 exposure: 1.0,
                 motion: Vec::new(),
             }),

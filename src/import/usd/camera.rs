@@ -55,6 +55,7 @@ pub(super) fn read(reading: &Reading<'_>, placed: &Placed) -> Option<CameraDesc>
         shutter: shutter(&values),
         shutter_curve: Vec::new(),
         rolling_shutter: None,
+        zoom: Vec::new(),
         exposure: exposure(&values),
         motion: placed.motion.clone(),
     })

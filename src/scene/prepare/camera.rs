@@ -202,6 +202,7 @@ mod tests {
             shutter: [0.0; 2],
             shutter_curve: Vec::new(),
             rolling_shutter: None,
+            zoom: Vec::new(),
             exposure: 1.0,
             motion: Vec::new(),
         }

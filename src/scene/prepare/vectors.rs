@@ -48,7 +48,9 @@ pub fn cameras(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: D
     });
     [0.0, 1.0].map(|time| {
         let transform = moving.as_ref().map_or(desc.transform, |moving| moving.at(time));
-        still(&CameraDesc { transform, ..desc.clone() }, render, size, origin)
+        let zoomed = desc.zoom.iter().find(|zoom| zoom.time == FRAMES[time as usize]);
+        let projection = zoomed.map_or(desc.projection, |zoom| zoom.value);
+        still(&CameraDesc { transform, projection, ..desc.clone() }, render, size, origin)
     })
 }
 
