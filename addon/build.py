@@ -7,6 +7,10 @@ Needs maturin (pip install maturin) and Rust, unless a wheel is given. Prints th
 """
 
 import argparse
+import base64
+import csv
+import hashlib
+import io
 import pathlib
 import re
 import shutil
@@ -44,6 +48,40 @@ def platform_of(wheel):
     raise SystemExit(f"{wheel.name} is for a platform that Blender does not run on")
 
 
+def stamped(wheel, folder):
+    """A copy of `wheel` whose version ends in a stamp of what is in it.
+
+    Blender tells installed wheels from new ones by name and version alone: without, an extension that is installed over
+    one of the same version keeps the engine of that.
+    """
+    with zipfile.ZipFile(wheel) as source:
+        members = [(info, source.read(info)) for info in source.infolist() if not info.is_dir()]
+    record = next(info.filename for info, _ in members if re.fullmatch(r"[^/]+\.dist-info/RECORD", info.filename))
+    name, version = record.partition(".dist-info/")[0].rsplit("-", 1)
+    contents = hashlib.sha256()
+    for info, data in sorted(members, key=lambda member: member[0].filename):
+        if info.filename != record:
+            contents.update(f"{info.filename}\0{len(data)}\0".encode() + data)
+    new = f"{version.partition('+')[0]}+{contents.hexdigest()[:12]}"
+    moved = lambda path: re.sub(rf"^{re.escape(f'{name}-{version}')}(\.dist-info|\.data)/", rf"{name}-{new}\1/", path)
+    target = folder / wheel.name.replace(f"{name}-{version}-", f"{name}-{new}-", 1)
+    rows = []
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for info, data in members:
+            if info.filename == record:
+                continue
+            if info.filename == record.replace("RECORD", "METADATA"):
+                data = re.sub(rb"(?m)^Version: .*$", f"Version: {new}".encode(), data, count=1)
+            info.filename = moved(info.filename)
+            archive.writestr(info, data)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            rows.append((info.filename, f"sha256={digest}", len(data)))
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([*rows, (moved(record), "", "")])
+        archive.writestr(moved(record), text.getvalue())
+    return target
+
+
 def build_zip(wheel, out):
     """The extension with `wheel` inside."""
     source = ROOT / "addon" / "penumbra"
@@ -75,7 +113,7 @@ def main():
         kept = args.out / wheel.name
         if wheel.resolve() != kept.resolve():
             shutil.copy(wheel, kept)
-        print(build_zip(kept, args.out))
+        print(build_zip(stamped(kept, pathlib.Path(folder)), args.out))
 
 
 if __name__ == "__main__":

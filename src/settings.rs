@@ -31,6 +31,9 @@ impl Integrator {
                     | Ao
                     | Normal
                     | Uv
+                    | Mist
+                    | Vector
+                    | VectorShare
                     | DenoisingNormal
                     | DenoisingDepth
                     | CryptoObject
@@ -52,6 +55,17 @@ pub enum LightSelection {
     Power,
     /// All alike.
     Uniform,
+}
+
+/// How mist grows from where it begins to where it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MistFalloff {
+    /// Evenly.
+    Linear,
+    /// Slowly at first: the square of the share of the way.
+    Quadratic,
+    /// Fast at first: its root.
+    InverseQuadratic,
 }
 
 /// Which effects are simulated.
@@ -208,6 +222,9 @@ macro_rules! choice {
 choice!(Integrator, INTEGRATORS, "path" => Integrator::Path, "direct" => Integrator::Direct, "ao" => Integrator::Ao);
 choice!(LightSelection, LIGHT_SELECTIONS,
     "tree" => LightSelection::Tree, "power" => LightSelection::Power, "uniform" => LightSelection::Uniform);
+choice!(MistFalloff, MIST_FALLOFFS,
+    "linear" => MistFalloff::Linear, "quadratic" => MistFalloff::Quadratic,
+    "inverse_quadratic" => MistFalloff::InverseQuadratic);
 choice!(EffectsMode, EFFECTS, "auto" => EffectsMode::Auto, "all" => EffectsMode::All);
 
 impl Value for Pattern {
@@ -304,6 +321,12 @@ settings! {
         "Occluders farther than this many metres do not count in the ao pass; unlimited unless set";
     ao_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
         "Ambient occlusion rays per sample";
+    mist_start: f64 = "5", Kind::Float { min: 0.0, max: f64::MAX }, "D",
+        "Metres from the camera at which the mist pass begins";
+    mist_depth: f64 = "25", Kind::Float { min: 0.0, max: f64::MAX }, "D",
+        "Metres from there to where it ends";
+    mist_falloff: MistFalloff = "quadratic", Kind::Choice(MIST_FALLOFFS), "NAME",
+        "How the mist pass grows on the way: linear, quadratic (slowly at first) or inverse_quadratic (fast at first)";
     light_samples: u32 = "1", Kind::Int { min: 1, max: 4096 }, "N",
         "Light samples at the first hit per sample";
     light_selection: LightSelection = "tree", Kind::Choice(LIGHT_SELECTIONS), "NAME",

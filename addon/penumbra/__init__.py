@@ -4,7 +4,7 @@ What happens here is copying: properties by their names into one JSON document, 
 arrays (export/), pictures back into Blender's passes (engine.py). What they mean is decided in Rust.
 """
 
-from . import engine, files, lent, panels, properties
+from . import engine, files, lent, loaded, panels, properties
 
 # Blender's glTF exporter looks for it here.
 from .files import glTF2ExportUserExtension
@@ -15,6 +15,7 @@ MODULES = (properties, engine, panels, lent, files)
 
 
 def register():
+    loaded.note()
     for module in MODULES:
         module.register()
 

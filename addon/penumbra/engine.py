@@ -5,7 +5,7 @@ import traceback
 import bpy
 import penumbra
 
-from . import passes, properties
+from . import loaded, passes, properties
 from .export import Exporter, libraries, motion
 from .viewport import Viewport
 
@@ -52,11 +52,17 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             self.error_set(message)
 
     def _render(self, depsgraph):
+        loaded.check()
         scene, view_layer = depsgraph.scene, depsgraph.view_layer
         scale = scene.render.resolution_percentage / 100.0
         size = [max(int(n * scale), 1) for n in (scene.render.resolution_x, scene.render.resolution_y)]
         if scene.camera is None and self.camera_override is None:
             raise ValueError("the scene has no camera: add one, or make one the scene's camera")
+        if scene.render.use_multiview:
+            raise ValueError(
+                "stereo pictures are not rendered: turn Stereoscopy off in the output properties, and render each view by"
+                " its own camera"
+            )
         self.update_stats("", "Penumbra: reading the scene")
         exporter = Exporter(penumbra.Scene())
         exporter.export(depsgraph, size, self.camera_override, motion=self._motion(depsgraph))
@@ -83,11 +89,13 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         self._fill(view_layer, picture)
 
     def _motion(self, depsgraph):
-        """What gathers the motion of a picture with motion blur; None for one without."""
-        scene = depsgraph.scene_eval
-        if self.is_preview or not motion.is_on(scene, depsgraph.view_layer_eval):
+        """What gathers the motion of a picture that is blurred, or has the vector pass; None for others."""
+        scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+        if self.is_preview:
             return None
-        return motion.Motion(scene, self.frame_set, self.test_break)
+        if motion.is_on(scene, layer):
+            return motion.Motion(scene, self.frame_set, self.test_break)
+        return motion.Vectors(scene, self.frame_set, self.test_break) if layer.use_pass_vector else None
 
     def _settings(self, scene, view_layer):
         """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""

@@ -23,7 +23,7 @@ _OF_CYCLES = {
     "CYCLES_MATERIAL_PT_settings",
     "CYCLES_LIGHT_PT_preview", "CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_settings", "CYCLES_LIGHT_PT_nodes",
     "CYCLES_LIGHT_PT_beam_shape",
-    "CYCLES_WORLD_PT_preview", "CYCLES_WORLD_PT_surface", "CYCLES_WORLD_PT_ray_visibility", "CYCLES_WORLD_PT_settings",
+    "CYCLES_WORLD_PT_preview", "CYCLES_WORLD_PT_surface", "CYCLES_WORLD_PT_mist", "CYCLES_WORLD_PT_ray_visibility", "CYCLES_WORLD_PT_settings",
     "CYCLES_WORLD_PT_settings_light_group",
     "OBJECT_PT_shadow_terminator", "CYCLES_OBJECT_PT_shading_shadow_terminator",
     "CYCLES_OBJECT_PT_motion_blur", "CYCLES_OBJECT_PT_shading", "CYCLES_OBJECT_PT_lightgroup", "CYCLES_OBJECT_PT_light_linking",

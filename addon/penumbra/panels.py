@@ -157,6 +157,29 @@ class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
         column = layout.column()
         column.prop(render, "motion_blur_position", text="Position")
         column.prop(render, "motion_blur_shutter")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            column.separator()
+            column.prop(cycles, "rolling_shutter_type", text="Rolling Shutter")
+            duration = column.column()
+            duration.active = cycles.rolling_shutter_type != "NONE"
+            duration.prop(cycles, "rolling_shutter_duration")
+
+
+class PENUMBRA_PT_motion_blur_curve(_Panel, bpy.types.Panel):
+    bl_label = "Shutter Curve"
+    bl_context = "render"
+    bl_parent_id = "PENUMBRA_PT_motion_blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.active = render.use_motion_blur
+        layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+        row = layout.row(align=True)
+        for shape, icon in (("SMOOTH", "SMOOTHCURVE"), ("ROUND", "SPHERECURVE"), ("ROOT", "ROOTCURVE"),
+                            ("SHARP", "SHARPCURVE"), ("LINE", "LINCURVE"), ("MAX", "NOCURVE")):
+            row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
 
 
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
@@ -213,12 +236,14 @@ class _Passes(_Panel):
                     column.prop(layer.penumbra, f"use_pass_{name}", text=text)
                 elif passes.is_known(f"use_pass_{name}"):
                     column.prop(layer, f"use_pass_{name}", text=text)
+                elif passes.has_box_of_cycles(name, layer):
+                    column.prop(layer.cycles, f"use_pass_{name}", text=text)
 
 
 class PENUMBRA_PT_passes_shadow(_Passes, bpy.types.Panel):
     bl_label = "Shadow and Occlusion"
     BOXES = (("Include", (("shadow", "Shadow"), ("unshadowed", "Diffuse Direct Unshadowed"),
-                          ("ambient_occlusion", "Ambient Occlusion"))),)
+                          ("ambient_occlusion", "Ambient Occlusion"), ("shadow_catcher", "Shadow Catcher"))),)
 
 
 class PENUMBRA_PT_passes_data(_Passes, bpy.types.Panel):
@@ -291,6 +316,7 @@ PANELS = (
     PENUMBRA_PT_light_paths_caustics,
     PENUMBRA_PT_ambient_occlusion,
     PENUMBRA_PT_motion_blur,
+    PENUMBRA_PT_motion_blur_curve,
     PENUMBRA_PT_film,
     PENUMBRA_PT_performance,
     PENUMBRA_PT_passes,

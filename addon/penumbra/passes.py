@@ -27,12 +27,17 @@ for _lobe in ("diffuse", "glossy", "transmission"):
     for _part in ("direct", "indirect", "color"):
         _BOXES[f"{_lobe}_{_part}"] = f"use_pass_{_lobe}_{_part}"
 
-# Those that there is no pass for, by name.
-_MISSING = {"Mist": "use_pass_mist", "Vector": "use_pass_vector"}
-_MISSING_OF_CYCLES = {
-    "Shadow Catcher": "use_pass_shadow_catcher",
+# Check boxes of Cycles' own settings of the view layer, by pass.
+_BOXES_OF_CYCLES = {"shadow_catcher": "use_pass_shadow_catcher"}
+
+# Those of them that there is no pass for, by name, as far as a version of Blender has them.
+_MISSING = {
     "Volume Direct": "use_pass_volume_direct",
     "Volume Indirect": "use_pass_volume_indirect",
+    "Volume Scatter": "use_pass_volume_scatter",
+    "Volume Transmit": "use_pass_volume_transmit",
+    "Volume Majorant": "use_pass_volume_majorant",
+    "Render Time": "pass_render_time",
 }
 
 _TYPES = {"X": "VALUE", "Z": "VALUE", "XYZ": "VECTOR", "XYZW": "VECTOR", "UVA": "VECTOR"}
@@ -56,6 +61,9 @@ def _of_engine(view_layer):
                 names.append(name.replace("<group>", "*"))
         elif name in _BOXES:
             if getattr(view_layer, _BOXES[name], False):
+                names.append(name)
+        elif name in _BOXES_OF_CYCLES:
+            if getattr(getattr(view_layer, "cycles", None), _BOXES_OF_CYCLES[name], False):
                 names.append(name)
         elif getattr(own, f"use_pass_{name}", False):
             names.append(name)
@@ -84,8 +92,7 @@ def clashing(view_layer):
 def missing(view_layer):
     """Names of the passes of Blender and Cycles that the view layer asks for and the engine does not have."""
     cycles = getattr(view_layer, "cycles", None)
-    asked = [name for name, box in _MISSING.items() if not is_known(box) and getattr(view_layer, box, False)]
-    return asked + [name for name, box in _MISSING_OF_CYCLES.items() if getattr(cycles, box, False)]
+    return [name for name, box in _MISSING.items() if getattr(cycles, box, False)]
 
 
 def _layers_of_engine(view_layer):
@@ -111,10 +118,15 @@ def is_known(box):
     return any(_BOXES.get(row["name"]) == box for row in penumbra.passes())
 
 
+def has_box_of_cycles(name, view_layer):
+    """True for a pass which a check box of Cycles' own asks for, where the view layer has that."""
+    return hasattr(getattr(view_layer, "cycles", None), _BOXES_OF_CYCLES.get(name, ""))
+
+
 def own_boxes():
     """Passes that Blender has no check box for: (name, layer, help)."""
     return [
         (row["name"], row["layer"], row["help"])
         for row in penumbra.passes()
-        if row["name"] not in _BOXES and row["name"] != "combined" and "<" not in row["name"]
+        if row["name"] not in {*_BOXES, *_BOXES_OF_CYCLES, "combined"} and "<" not in row["name"]
     ]

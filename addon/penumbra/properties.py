@@ -19,7 +19,7 @@ _CYCLES = {
 }
 # What Blender has properties of its own for.
 _BLENDERS = {
-    "passes", "threads", "half", "filter", "motion_blur", "shadow_terminator_geometry_offset",
+    "passes", "threads", "half", "filter", "motion_blur", "mist_start", "mist_depth", "mist_falloff", "shadow_terminator_geometry_offset",
     "shadow_terminator_shading_offset", *_CYCLES,
 }
 _UNITS = {"time": "TIME_ABSOLUTE", "ao_distance": "LENGTH"}
@@ -105,10 +105,19 @@ def settings(scene, view_layer):
     if bpy.app.version < (5, 0) and "transparent_bounces" in result:
         # Measured: Cycles 4 passes one more than it says.
         result["transparent_bounces"] += 1
+    result.update(_mist(scene.world))
     world = scene.world
     if world is not None and "ao_distance" not in result:
         result["ao_distance"] = world.light_settings.distance
     return result
+
+
+def _mist(world):
+    """The world's mist, as Cycles takes it; that of no world is Cycles' own."""
+    if world is None:
+        return {"mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": "linear"}
+    mist = world.mist_settings
+    return {"mist_start": mist.start, "mist_depth": mist.depth, "mist_falloff": mist.falloff.lower()}
 
 
 def register():

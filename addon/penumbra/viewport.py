@@ -8,7 +8,7 @@ import penumbra
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.presets import draw_texture_2d
 
-from . import properties
+from . import loaded, properties
 from .export import Exporter, camera
 
 # Seconds between two looks for a new picture.
@@ -37,6 +37,7 @@ class Viewport:
 
     def update(self, context, depsgraph):
         """The scene was edited: hands over what changed."""
+        loaded.check()
         size = (max(context.region.width, 1), max(context.region.height, 1))
         self.exporter.update(depsgraph, size, context.space_data)
         self.stale = True

@@ -105,6 +105,11 @@ impl Glass {
         Self { ggx, boundary, passage, factor, albedo }
     }
 
+    /// See [`super::lobe::AnyLobe::width`].
+    pub fn width(&self) -> f32 {
+        self.ggx.map_or(0.0, Ggx::mean)
+    }
+
     /// See [`super::lobe::AnyLobe::widen`].
     pub fn widen(&mut self, least: f32) {
         self.ggx = Ggx::widened(self.ggx, least);

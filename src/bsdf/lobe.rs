@@ -132,6 +132,15 @@ macro_rules! lobes {
 }
 
 impl AnyLobe {
+    /// Width of its microfacets; 0 for a mirror and 1 for what has none.
+    pub fn width(&self) -> f32 {
+        match self {
+            Self::Reflection(lobe) => lobe.width(),
+            Self::Glass(lobe) => lobe.width(),
+            _ => 1.0,
+        }
+    }
+
     /// Makes microfacets at least `least` wide; what they keep of light stays what it is.
     #[cold]
     pub fn widen(&mut self, least: f32) {

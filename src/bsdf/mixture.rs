@@ -6,7 +6,7 @@ use super::ggx::Ggx;
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::softening::Softening;
 use super::surface::ThinFilm;
-use super::{Beneath, BsdfEval, BsdfSample, ByLobe, Closure, Lobe, Surface};
+use super::{Beneath, BsdfEval, BsdfSample, ByLobe, Closure, Features, Lobe, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 
 /// How the sides of a lobe are counted in the passes.
@@ -229,6 +229,25 @@ impl Bsdf {
             *sum.get_mut(term.class.below()) += term.color * sides.below;
         }
         sum
+    }
+
+    /// What a denoiser asks, where microfacets narrower than `mirror` are mirrors.
+    pub fn features(&self, mirror: f32) -> Features {
+        let mut features = Features::default();
+        for term in &self.terms {
+            let color = term.color * term.lobe.color().sum();
+            let n = term.frame.map_or(Vec3::Z, |frame| self.frames[usize::from(frame)].0.n);
+            let weight = color.mean();
+            features.normal += Vec3::new(n.x, n.y, n.z * self.side) * weight;
+            features.weight += weight;
+            if term.lobe.width() > mirror {
+                features.rough += color;
+                features.rough_weight += weight;
+            } else {
+                features.mirror += color;
+            }
+        }
+        features
     }
 
     /// True where `eval` is 0 for all directions: asking lights is of no use.

@@ -39,7 +39,7 @@ pub use fresnel::{f0_from_eta, fresnel_dielectric};
 pub use medium::Medium;
 pub use mixture::{Bsdf, Builder, Widening};
 pub use profile::Profile;
-pub use response::{BsdfEval, BsdfSample, ByLobe, Lobe};
+pub use response::{BsdfEval, BsdfSample, ByLobe, Features, Lobe};
 pub use softening::Softening;
 pub use subsurface::{Beneath, Inside, Method, Subsurface};
 pub use surface::{Coat, Sheen, Stretched, Surface, ThinFilm};

@@ -104,6 +104,11 @@ impl Reflection {
         Self { ggx, fresnel, factor, albedo }
     }
 
+    /// See [`super::lobe::AnyLobe::width`].
+    pub fn width(&self) -> f32 {
+        self.ggx.map_or(0.0, Ggx::mean)
+    }
+
     /// See [`super::lobe::AnyLobe::widen`].
     pub fn widen(&mut self, least: f32) {
         self.ggx = Ggx::widened(self.ggx, least);

@@ -15,6 +15,21 @@ pub enum Lobe {
     Transmission,
 }
 
+/// What a denoiser asks of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Features {
+    /// Color of what scatters widely.
+    pub rough: Rgb,
+    /// Color of what all but mirrors.
+    pub mirror: Rgb,
+    /// Sum of the normals of both, each as long as its lobe is bright; in the surface's frame.
+    pub normal: Vec3,
+    /// How bright what scatters widely is, and all together.
+    pub rough_weight: f32,
+    /// See `rough_weight`.
+    pub weight: f32,
+}
+
 /// A color for each class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ByLobe {

@@ -5,12 +5,14 @@ mod motion;
 mod orthographic;
 mod panorama;
 mod perspective;
+mod shutter;
 
 pub use lens::Lens;
 pub use motion::CameraMotion;
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;
+pub use shutter::Exposure;
 
 use crate::math::{Frame, Ray, Vec3};
 
@@ -119,6 +121,34 @@ impl Camera {
         match &self.projection {
             Projection::Panorama(camera) => (p - camera.view.origin).length(),
             _ => self.view().depth(p),
+        }
+    }
+
+    /// How far `p` is from the camera; along the axis where rays are parallel.
+    pub fn distance(&self, p: Vec3) -> f32 {
+        match &self.projection {
+            Projection::Orthographic(camera) => camera.view.depth(p).abs(),
+            _ => (p - self.view().origin).length(),
+        }
+    }
+
+    /// Where `p` stands in the whole picture: pixels from the left and from below.
+    pub fn raster(&self, p: Vec3) -> [f32; 2] {
+        let ([x, y], [width, height]) = (self.window(p), self.size());
+        [x * width, y * height]
+    }
+
+    /// How far `y`, in pixels from the top of what is rendered, is down the whole picture: 0 to 1.
+    pub fn down(&self, y: f32) -> f32 {
+        (y + self.corner[1]) / self.size()[1]
+    }
+
+    /// Size of the whole picture in pixels.
+    fn size(&self) -> [f32; 2] {
+        match &self.projection {
+            Projection::Perspective(camera) => camera.size,
+            Projection::Orthographic(camera) => camera.size,
+            Projection::Panorama(camera) => camera.size,
         }
     }
 

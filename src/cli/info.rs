@@ -38,7 +38,7 @@ pub fn command() -> Command {
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     let start = Instant::now();
-    let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied())?;
+    let (scene, warnings) = super::scene::load(args, args.get_one("frame").copied(), false)?;
     let read_s = start.elapsed().as_secs_f64();
     let is_json = args.get_flag("json");
     let mut info = describe(&scene, &warnings, if is_json { usize::MAX } else { MOST_MESHES });

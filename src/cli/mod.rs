@@ -130,8 +130,8 @@ mod scene {
         args.get_one::<PathBuf>("scene").expect("required")
     }
 
-    /// The scene at `frame`, with the warnings of its import.
-    pub fn load(args: &ArgMatches, frame: Option<f64>) -> Result<(SceneDesc, Warnings)> {
+    /// The scene at `frame`, with the warnings of its import; with `vectors` as [`ImportOptions`] says.
+    pub fn load(args: &ArgMatches, frame: Option<f64>, vectors: bool) -> Result<(SceneDesc, Warnings)> {
         let light_units = match args.get_one::<String>("light-units").map(String::as_str) {
             Some("compat") => LightUnits::Compat,
             Some("raw") => LightUnits::Raw,
@@ -148,6 +148,7 @@ mod scene {
                 _ => Interpolation::Linear,
             },
             subdivision: args.get_one("subdivision").copied().unwrap_or(default.subdivision),
+            vectors,
             ..default
         };
         let mut warnings = Warnings::new();

@@ -7,7 +7,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use penumbra::desc::{ProductDesc, SceneDesc};
 use penumbra::error::{Place, Warnings};
-use penumbra::film::SampleId;
+use penumbra::film::{Quantity, SampleId};
 use penumbra::job;
 use penumbra::output::{exr, png};
 use penumbra::render::Rendered;
@@ -139,7 +139,7 @@ fn render_frame(
     let is_debug = args.contains_id("debug-sample");
     // A name that was typed is checked before anything is read.
     let typed = if args.contains_id("output") { Some(Files::of(args, frame, None)?) } else { None };
-    let (mut desc, mut warnings) = scene::load(args, frame)?;
+    let (mut desc, mut warnings) = scene::load(args, frame, settings.passes.needs(Quantity::Vector))?;
     let shots = shots::of(args, frame, &desc, &mut warnings)?;
     let files = match typed {
         None if !is_debug => {

@@ -27,10 +27,17 @@ pub struct CameraDesc {
     pub lens: Option<LensDesc>,
     /// When the shutter opens and closes, in frames after the frame itself; both 0 for an instant.
     pub shutter: [f64; 2],
+    /// How far it is open at even steps of that time, on straight lines in between; empty where it is wide open.
+    pub shutter_curve: Vec<f64>,
+    /// Rows of the picture are exposed one after the other, from the top, each for this share of that time; `None`
+    /// where all are at once.
+    pub rolling_shutter: Option<f64>,
     /// Factor of the picture's radiance.
     pub exposure: f64,
     /// The transform at other times of the shutter, in the order of time.
     pub motion: Vec<Motion<DAffine3>>,
+    /// How it projects at the frames before and after where it zooms: what the vector pass asks.
+    pub zoom: Vec<Motion<ProjectionDesc>>,
 }
 
 /// A thin lens.

@@ -65,8 +65,7 @@ impl Means<'_> {
     pub(super) fn combined(&self) -> [f64; 4] {
         let mut combined = self.of(Q::Combined);
         if self.has_catchers {
-            let (lit, all) = (self.of(Q::CatcherLit), self.of(Q::CatcherUnshadowed));
-            let s: [f64; 3] = std::array::from_fn(|i| if all[i] == 0.0 { 1.0 } else { (lit[i] / all[i]).min(1.0) });
+            let s = self.of_catchers();
             let (behind, share, mean) = (self.of(Q::Behind), self.of(Q::CatcherShare)[0], (s[0] + s[1] + s[2]) / 3.0);
             for i in 0..3 {
                 combined[i] += s[i] * behind[i];
@@ -74,6 +73,26 @@ impl Means<'_> {
             combined[3] += (1.0 - mean) * share + mean * behind[3];
         }
         combined
+    }
+
+    /// What shadow catchers leave of the light on them.
+    fn of_catchers(&self) -> [f64; 3] {
+        let (lit, all) = (self.of(Q::CatcherLit), self.of(Q::CatcherUnshadowed));
+        std::array::from_fn(|i| if all[i] == 0.0 { 1.0 } else { (lit[i] / all[i]).min(1.0) })
+    }
+
+    /// The same laid over white by all that the picture covers, catchers included, as Cycles does it: what is
+    /// transparent beside a catcher is left as it is.
+    fn shadow_catcher(&self) -> [f64; 4] {
+        let alpha = (self.of(Q::Combined)[3] + self.of(Q::CatcherShare)[0]).clamp(0.0, 1.0);
+        let [r, g, b] = self.of_catchers().map(|s| 1.0 - alpha * (1.0 - s));
+        [r, g, b, 0.0]
+    }
+
+    /// Mean of `q` over that of `share`; 0 where nothing has one.
+    fn of_share(&self, q: Quantity, share: Quantity) -> [f64; 4] {
+        let share = self.of(share)[0];
+        self.of(q).map(|value| if share == 0.0 { 0.0 } else { value / share })
     }
 
     /// Mean of `a` over the mean of `b` per channel; 0 where `b` is 0.
@@ -195,6 +214,9 @@ use Storage::{Color, Data};
 /// What the shadow pass is made of.
 const SHADOW: &[Quantity] = &[Q::DiffuseDirect, Q::Unshadowed, Q::IrradianceShadowed, Q::IrradianceUnshadowed];
 
+/// What the shadow catcher pass is made of, and Combined with catchers.
+const CATCHER: &[Quantity] = &[Q::Combined, Q::CatcherLit, Q::CatcherUnshadowed, Q::CatcherShare, Q::Behind];
+
 /// The passes, in the order in which a file holds them.
 #[rustfmt::skip]
 pub static PASSES: &[Pass] = &[
@@ -202,12 +224,16 @@ pub static PASSES: &[Pass] = &[
         "radiance, premultiplied by alpha"),
     pixel("depth", "Depth", "Z", Data, &[Q::FirstHit], |m| [f64::from(m.first_hit.depth), 0.0, 0.0, 0.0],
         "distance along the camera's axis at the pixel's centre; background 1e10"),
+    pixel("mist", "Mist", "Z", Data, &[Q::Mist], |m| [(1.0 - m.of(Q::Mist)[0]).clamp(0.0, 1.0), 0.0, 0.0, 0.0],
+        "how far away, 0 at the start of the mist to 1 at its end, averaged with coverage; background 1"),
     pixel("position", "Position", "XYZ", Data, &[Q::FirstHit], |m| vector(m.first_hit.position.to_array()),
         "point in world space at the pixel's centre; background 0"),
     pixel("normal", "Normal", "XYZ", Data, &[Q::Normal], |m| m.of(Q::Normal),
         "shading normal in world space towards the viewer, averaged with coverage, not renormalised"),
     pixel("uv", "UV", "UVA", Data, &[Q::Uv], |m| m.of(Q::Uv),
         "texture coordinates times coverage; A is the coverage of surfaces that have them"),
+    pixel("vector", "Vector", "XYZW", Data, &[Q::Vector, Q::VectorShare], |m| m.of_share(Q::Vector, Q::VectorShare),
+        "motion in pixels, right and up: from here to the frame before (X, Y), from the frame after to here (Z, W); background 0"),
     pixel("object_index", "Object Index", "X", Data, &[Q::FirstHit], |m| [f64::from(m.first_hit.object_index), 0.0, 0.0, 0.0],
         "pass index of the object at the pixel's centre; background 0"),
     pixel("material_index", "Material Index", "X", Data, &[Q::FirstHit], |m| [f64::from(m.first_hit.material_index), 0.0, 0.0, 0.0],
@@ -268,6 +294,8 @@ pub static PASSES: &[Pass] = &[
     pixel("unshadowed", "Diffuse Direct Unshadowed", "RGB", Color, &[Q::Unshadowed, Q::DiffuseColor],
         |m| m.ratio(Q::Unshadowed, Q::DiffuseColor),
         "Diffuse Direct with nothing in the way: Diffuse Direct = Shadow x this"),
+    pixel("shadow_catcher", "Shadow Catcher", "RGB", Color, CATCHER, |m| m.shadow_catcher(),
+        "what shadow catchers leave of the light on them, to multiply a picture by; 1 beside them"),
     pixel("combined_<group>", "Combined_<group>", "RGB", Color, &[Q::GroupCombined], |m| m.of(Q::GroupCombined),
         "part of Combined that the lights of a light group brought; the groups sum to Combined where every light is in one"),
     pixel("shadow_<group>", "Shadow_<group>", "RGB", Color,

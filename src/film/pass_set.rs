@@ -306,10 +306,11 @@ impl PassSet {
         self.needs_any(&[Quantity::DiffuseColor, Quantity::GlossyColor, Quantity::TransmissionColor])
     }
 
-    /// Paths beyond the first surface are called for.
+    /// Paths beyond the first surface are called for: by a denoiser in mirrors.
     pub fn needs_indirect(&self) -> bool {
         use Quantity::*;
         self.needs_any(&[Combined, GroupCombined, DiffuseIndirect, GlossyIndirect, TransmissionIndirect])
+            || self.needs_denoising()
     }
 
     /// Light arriving at surfaces is called for, but for the shadows of light groups.

@@ -38,6 +38,9 @@ pub enum Quantity {
     Behind,
     Normal,
     Uv,
+    Mist,
+    Vector,
+    VectorShare,
     DenoisingNormal,
     DenoisingAlbedo,
     DenoisingDepth,
@@ -55,7 +58,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of the film's memory.
-    pub const ALL: [Self; 35] = [
+    pub const ALL: [Self; 38] = [
         Self::Combined,
         Self::DiffuseDirect,
         Self::DiffuseIndirect,
@@ -83,6 +86,9 @@ impl Quantity {
         Self::Behind,
         Self::Normal,
         Self::Uv,
+        Self::Mist,
+        Self::Vector,
+        Self::VectorShare,
         Self::DenoisingNormal,
         Self::DenoisingAlbedo,
         Self::DenoisingDepth,
@@ -108,8 +114,8 @@ impl Quantity {
     /// How many numbers the film adds up for it, for one group; 0 for those that are kept in another way.
     pub const fn width(self) -> usize {
         match self {
-            Self::Combined | Self::Behind => 4,
-            Self::DenoisingDepth | Self::CatcherShare => 1,
+            Self::Combined | Self::Behind | Self::Vector => 4,
+            Self::DenoisingDepth | Self::CatcherShare | Self::Mist | Self::VectorShare => 1,
             Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset | Self::FirstHit | Self::Aov => 0,
             _ => 3,
         }
@@ -155,6 +161,9 @@ impl Quantity {
             }
             Self::Normal => vector(s.normal),
             Self::Uv => [s.uv[0], s.uv[1], s.uv[2], 0.0],
+            Self::Mist => [s.mist, 0.0, 0.0, 0.0],
+            Self::Vector => s.vector,
+            Self::VectorShare => [s.vector_share, 0.0, 0.0, 0.0],
             Self::DenoisingNormal => vector(s.denoising_normal),
             Self::DenoisingAlbedo => color(s.denoising_albedo),
             Self::DenoisingDepth => [s.denoising_depth, 0.0, 0.0, 0.0],

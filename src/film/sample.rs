@@ -97,6 +97,13 @@ pub struct PixelSample {
     pub normal: Vec3,
     /// Texture coordinates times coverage; the third is the coverage where the surface has UVs, else 0.
     pub uv: [f32; 3],
+    /// How much of the picture is clear of mist: 1 less the mist at each surface, times what the surface covers.
+    pub mist: f32,
+    /// How far the first surface moves in the picture, right and up in pixels: where it was a frame before less where
+    /// it is, and where it is less where it will be a frame after.
+    pub vector: [f32; 4],
+    /// 1 where `vector` is known.
+    pub vector_share: f32,
     /// A shadow catcher in front.
     pub catcher: CatcherSample,
     /// Normal for a denoiser, in camera space.

@@ -49,6 +49,8 @@ pub struct ImportOptions {
     pub purposes: Option<Vec<Purpose>>,
     /// What USD's time samples are between their times.
     pub interpolation: Interpolation,
+    /// Where things are a frame before and a frame after is read, too: what the vector pass asks.
+    pub vectors: bool,
 }
 
 /// What is between samples in time.
@@ -82,6 +84,7 @@ impl Default for ImportOptions {
             subdivision: 2,
             purposes: None,
             interpolation: Interpolation::Linear,
+            vectors: false,
         }
     }
 }

@@ -47,11 +47,14 @@ pub fn trace(scene: &Scene, sampler: &Sampler, ray: Ray, cone: RayCone, settings
     let Some(first) = super::path::first_surface(scene, sampler, ray, cone, &mut sample) else {
         return sample;
     };
-    let First { it, vertex, media, left } = first;
+    let First { it, vertex, media, left, travelled } = first;
     let frame = scene.shading_frame(&it);
     sample.ao = openness(scene, sampler, vertex, &it, &frame, settings, &media) * left;
     sample.combined = sample.ao;
     sample.alpha = 1.0;
-    super::first_hit::describe(scene, &it, &frame, &mut sample);
+    super::first_hit::describe(scene, &it, &mut sample);
+    if scene.effects.denoising {
+        super::path::tell_of_first(scene, &frame, travelled, &mut sample);
+    }
     sample
 }

@@ -2,17 +2,24 @@
 //! pixel's centre.
 
 use crate::film::{CryptoSample, FirstHit, PixelSample};
-use crate::math::{Frame, Ray, Vec3};
+use crate::math::Ray;
 use crate::scene::{Interaction, RayCone, Scene, mask};
 
 /// When the one ray is sent, as it comes from the middle of the pixel and of the lens.
 const MIDDLE: f32 = 0.5;
 
 /// Depth, position and indices of what the ray through the centre of pixel (`x`, `y`) meets first, in the middle of
-/// the shutter.
+/// the shutter, or of what of it the pixel's row has.
 pub fn first_hit(scene: &Scene, x: u32, y: u32) -> FirstHit {
-    let camera_ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    let ray = Ray { time: MIDDLE, ..camera_ray.ray };
+    let (at_x, at_y) = (x as f32 + 0.5, y as f32 + 0.5);
+    let ray = match &scene.camera_motion {
+        Some(motion) if scene.times.is_rolling() => {
+            let time = scene.time_of_row(y, MIDDLE);
+            Ray { time, ..motion.at(&scene.camera, time).ray(at_x, at_y).ray }
+        }
+        _ if scene.times.is_rolling() => Ray { time: scene.time_of_row(y, MIDDLE), ..scene.camera.ray(at_x, at_y).ray },
+        _ => Ray { time: MIDDLE, ..scene.camera.ray(at_x, at_y).ray },
+    };
     let Some(it) = first_opaque(scene, ray) else { return FirstHit::BACKGROUND };
     FirstHit {
         depth: scene.camera.depth(it.p),
@@ -54,6 +61,9 @@ pub fn describe_shape(scene: &Scene, it: &Interaction, opacity: f32, sample: &mu
     if !scene.effects.geometry {
         return true;
     }
+    if let Some(vectors) = &scene.vectors {
+        (sample.vector, sample.vector_share) = (vectors.at(scene, it), 1.0);
+    }
     sample.normal = scene.shading_frame(it).n;
     let shape = scene.shape(scene.instance(it.instance));
     if let Some(uv) = shape.uv(0, it.primitive, it.at) {
@@ -63,14 +73,16 @@ pub fn describe_shape(scene: &Scene, it: &Interaction, opacity: f32, sample: &mu
     true
 }
 
-/// Fills the other data that passes average over samples, those of the surface that has stopped the ray, as far
-/// as they are asked for.
-pub fn describe(scene: &Scene, it: &Interaction, frame: &Frame, sample: &mut PixelSample) {
-    if scene.effects.geometry {
-        let view = scene.camera.view();
-        sample.denoising_normal = Vec3::new(frame.n.dot(view.right), frame.n.dot(view.up), frame.n.dot(view.forward));
-        sample.denoising_depth = view.depth(it.p);
+/// Adds what is clear of mist before the surface at `it`, of which the share `alpha` is there and that is seen in the
+/// share `seen` of the sample.
+pub fn add_mist(scene: &Scene, it: &Interaction, seen: f32, alpha: f32, sample: &mut PixelSample) {
+    if !scene.is_holdout(it) {
+        sample.mist += scene.clear_of_mist(it.p) * seen * alpha;
     }
+}
+
+/// Names the surface that has stopped the ray, as far as they are asked for.
+pub fn describe(scene: &Scene, it: &Interaction, sample: &mut PixelSample) {
     if scene.effects.cryptomatte {
         let object = &scene.ids.objects[it.instance as usize];
         let material = &scene.ids.materials[it.material as usize];

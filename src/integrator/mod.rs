@@ -26,7 +26,7 @@ use crate::settings::{Integrator, Settings};
 pub fn sample(scene: &Scene, settings: &Settings, sampler: &Sampler, x: u32, y: u32) -> (PixelSample, f32) {
     let (dx, dy, weight) = settings.filter.sample(sampler.get_2d(Dimension::PIXEL));
     let on_lens = || sampler.get_2d(Dimension::LENS);
-    let time = if scene.effects.motion_blur { sampler.get_1d(Dimension::TIME) } else { 0.0 };
+    let time = if scene.effects.motion_blur { scene.time_of_row(y, sampler.get_1d(Dimension::TIME)) } else { 0.0 };
     let camera_ray = scene.camera_ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, time, on_lens);
     let cone = RayCone { width: camera_ray.width, spread: camera_ray.spread };
     let mut sample = match settings.integrator {

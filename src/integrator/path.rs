@@ -3,15 +3,17 @@
 //! James Kajiya: *The Rendering Equation*, SIGGRAPH 1986. Eric Veach: *Robust Monte Carlo Methods
 //! for Light Transport Simulation*, 1997, chapters 9 and 10.
 
+mod features;
 mod found;
 mod lights;
 mod next;
 mod scatter;
 
+pub use features::tell_of_first;
 pub use next::{First, first_surface};
 
 use super::direct::Shading;
-use super::first_hit::{describe, describe_shape};
+use super::first_hit::{add_mist, describe, describe_shape};
 use super::limits::Limits;
 use super::scattering::Scattering;
 use super::split::to_film;
@@ -22,6 +24,7 @@ use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Decision, Dimension, Sampler};
 use crate::scene::{Blur, Media, PathState, RayCone, Scene, mask};
 use crate::settings::Settings;
+use features::Look;
 use found::{add_background, add_emission, add_lamps};
 use lights::add_lights;
 use next::{Met, next_surface};
@@ -61,6 +64,8 @@ struct Path<'a> {
     sees_film: bool,
     /// What limits and graphs ask of it.
     state: PathState,
+    /// What a denoiser is told is still looked for.
+    look: Option<Look>,
     /// Where `ray` would have begun had it passed no surface since, and how far it has come.
     start: Vec3,
     travelled: f32,
@@ -86,6 +91,7 @@ impl<'a> Path<'a> {
             last: None,
             sees_film: scene.transparent_glass.is_some(),
             state: PathState::CAMERA,
+            look: scene.effects.denoising.then_some(Look::FIRST),
             start: ray.o,
             travelled: 0.0,
         }
@@ -131,7 +137,13 @@ pub fn trace(
                 if !described && path.scatterings == 0 {
                     described = describe_shape(scene, it, coverage.alpha(), &mut sample);
                 }
+                if scene.effects.mist && path.scatterings == 0 && in_front.is_none() {
+                    add_mist(scene, it, path.beta.mean(), coverage.alpha(), &mut sample);
+                }
                 add_emission(scene, path, it, coverage.opacity, &mut sample);
+                if path.look.is_some() {
+                    features::look(scene, path, it, coverage, settings, &mut sample);
+                }
             }
         });
         let Some(it) = surface else {
@@ -223,14 +235,13 @@ fn describe_first(
     sample: &mut PixelSample,
 ) {
     let Shading { it, frame, bsdf, vertex, media } = shading;
-    describe(scene, it, frame, sample);
+    describe(scene, it, sample);
     if scene.effects.ao {
         sample.ao = ao::openness(scene, sampler, *vertex, it, frame, settings, media) * (path.left * path.alpha);
     }
     if scene.effects.color {
         let color = bsdf.color() * path.beta;
         sample.color = to_film(color);
-        sample.denoising_albedo += color.sum();
     }
 }
 

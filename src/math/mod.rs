@@ -4,6 +4,7 @@
 //! ([`DAffine3`]) until `scene/prepare.rs` moves them to render space.
 
 mod bounds;
+mod cluster;
 mod frame;
 mod motion;
 mod ray;
@@ -14,6 +15,7 @@ mod srgb;
 mod transform;
 
 pub use bounds::Bounds;
+pub use cluster::Cluster;
 pub use frame::{Frame, orthonormal_pair};
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 pub use motion::{MovingTransform, Times, traced};

@@ -13,6 +13,7 @@ use super::picture::Picture;
 use super::scene::Scene;
 use crate::desc::SceneDesc;
 use crate::error::{Place, Result, Warnings};
+use crate::film::Quantity;
 use crate::import::{self, ImportOptions};
 use crate::job;
 use crate::render::render as trace;
@@ -58,7 +59,8 @@ pub fn render(
     let picture_interval = Duration::try_from_secs_f64(picture_interval)
         .map_err(|_| PyValueError::new_err("picture_interval must be a number of seconds, not negative"))?;
     let watch = Watch { observer, on_picture, picture_interval };
-    let options = ImportOptions { frame, subdivision, variants, ..ImportOptions::default() };
+    let vectors = settings.passes.needs(Quantity::Vector);
+    let options = ImportOptions { frame, subdivision, variants, vectors, ..ImportOptions::default() };
     let half = settings.half;
     let (name, read) = match &source {
         Source::File(path) => (path.display().to_string(), py.detach(|| load(path, &options))),

@@ -50,8 +50,12 @@ pub struct Effects {
     pub own_shadows: bool,
     /// The albedo of the first surface.
     pub color: bool,
-    /// Data of the first surface that average over samples: normal, uv, denoising.
+    /// Data of the first surface that average over samples: normal, uv, vector.
     pub geometry: bool,
+    /// What a denoiser is told: normal, albedo and depth of what is seen, in mirrors too.
+    pub denoising: bool,
+    /// How far what is seen is.
+    pub mist: bool,
     /// What surfaces give as AOVs.
     pub aovs: bool,
     /// Passes that take one ray through the pixel's centre.
@@ -118,8 +122,10 @@ impl Effects {
             shaped_emission: true,
             found_by_rays: true,
             own_shadows: true,
-            color: passes.needs_color() || passes.needs_denoising(),
-            geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs_denoising(),
+            color: passes.needs_color(),
+            geometry: passes.needs(Quantity::Normal) || passes.needs(Quantity::Uv) || passes.needs(Quantity::Vector),
+            denoising: passes.needs_denoising(),
+            mist: passes.needs(Quantity::Mist),
             aovs: passes.needs_aovs(),
             first_hit: passes.needs_first_hit(),
             cryptomatte: passes.needs_cryptomatte(),

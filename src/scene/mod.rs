@@ -13,6 +13,7 @@ mod interaction;
 mod lamp_shading;
 mod material;
 mod media;
+mod mist;
 mod path_state;
 mod prepare;
 mod shading;
@@ -21,6 +22,7 @@ mod spot;
 mod surroundings;
 mod terminator;
 mod trace;
+mod vectors;
 
 pub use blur::Blur;
 pub use effects::Effects;
@@ -29,10 +31,12 @@ pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::{Coverage, Material};
 pub use media::{Interior, Media};
+pub use mist::Mist;
 pub use path_state::{PathState, RayKind};
 pub use prepare::{Cache, Prepared, View, prepare, prepare_with};
 pub use terminator::Terminator;
 pub use trace::RayCone;
+pub use vectors::Vectors;
 
 use std::sync::Arc;
 
@@ -40,7 +44,7 @@ use aovs::BackgroundAovs;
 use asked::Asked;
 
 use crate::bvh::Bvh;
-use crate::camera::{Camera, CameraMotion, CameraRay};
+use crate::camera::{Camera, CameraMotion, CameraRay, Exposure};
 use crate::film::PassSet;
 use crate::light::LightSet;
 use crate::math::DVec3;
@@ -53,6 +57,8 @@ pub struct Scene {
     pub camera: Camera,
     /// How it moves while the shutter is open.
     pub camera_motion: Option<CameraMotion>,
+    /// When rays see it.
+    pub times: Exposure,
     /// Factor of all radiance in the picture.
     pub exposure: f32,
     /// Width and height of the picture in pixels.
@@ -77,6 +83,10 @@ pub struct Scene {
     pub max_transparent: u32,
     /// Opacity from which on a surface is what the data passes show.
     pub pass_alpha_threshold: f32,
+    /// What the mist pass shows.
+    pub mist: Mist,
+    /// What the vector pass compares the frame with; `None` where it is not rendered.
+    pub vectors: Option<Vectors>,
     /// Names and hashes for the index and Cryptomatte passes.
     pub ids: Ids,
     bvh: Bvh,
@@ -107,6 +117,11 @@ impl Scene {
         };
         found.ray.time = time;
         found
+    }
+
+    /// When a ray of pixels of row `y` from the top sees the scene, by a uniform `u`.
+    pub fn time_of_row(&self, y: u32, u: f32) -> f32 {
+        self.times.time(u, self.camera.down(y as f32 + 0.5))
     }
 
     /// The shape of `instance`.

@@ -20,6 +20,7 @@ mod shadow_look;
 mod shaping;
 mod suns;
 mod texels;
+mod vectors;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -30,7 +31,8 @@ use super::effects::emits;
 use super::framing::world_bounds;
 use super::shutter::Shutter;
 use super::surroundings::Surroundings;
-use super::{Effects, Ids, Scene};
+use super::{Effects, Ids, Mist, Scene};
+use crate::camera::Exposure;
 use crate::desc::{
     self, CameraDesc, InstanceDesc, LightDesc, LightKind, RenderDesc, SceneDesc, TerminatorDesc, Visibility,
 };
@@ -114,6 +116,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     };
     let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, terminator, cache, &mut warnings);
     let build_time = start.elapsed();
+    let vectors = passes.needs(Quantity::Vector) && !tell_of_no_vectors(&desc, &camera_desc, shutter, &mut warnings);
+    let vectors = vectors.then(|| vectors::prepare(&desc, &camera_desc, whole, origin, &geometry));
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
 
     let default_dome = default_dome(&desc, &materials, &mut warnings);
@@ -144,6 +148,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let scene = Scene {
         camera,
         camera_motion,
+        times: Exposure::new(&camera_desc.shutter_curve, camera_desc.rolling_shutter),
         exposure: camera::exposure(&camera_desc),
         size,
         origin,
@@ -159,6 +164,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         }),
         max_transparent: settings.transparent_bounces,
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
+        mist: Mist::of(settings),
+        vectors,
         ids: Ids::of(&desc, &geometry.placed),
         bvh: geometry.bvh,
         insides: geometry.insides,
@@ -192,6 +199,10 @@ impl Scene {
         if let Some(background) = &mut self.background_aovs {
             background.surroundings.camera = self.camera;
         }
+        if let Some(vectors) = &mut self.vectors {
+            vectors.cameras = vectors::cameras(&camera, render, whole, self.origin);
+        }
+        self.times = Exposure::new(&camera.shutter_curve, camera.rolling_shutter);
         self.exposure = camera::exposure(&camera);
         Ok(())
     }
@@ -232,6 +243,21 @@ fn warn_of_passes_left_out(desc: &SceneDesc, settings: &Settings, passes: &PassS
         let what = format!("--integrator ao computes none of these passes, which stay 0 and shadows 1: {names}");
         warnings.push(&desc.place, what);
     }
+}
+
+/// True, with a warning, where motion is blurred: then there is no vector pass, as in Cycles.
+fn tell_of_no_vectors(
+    desc: &SceneDesc,
+    camera: &CameraDesc,
+    shutter: Option<Shutter>,
+    warnings: &mut Warnings,
+) -> bool {
+    let blurred = shutter.is_some_and(|shutter| shutter.shows_motion(desc, camera));
+    if blurred {
+        let what = "the vector pass is of pictures without motion blur, this one stays 0; --motion-blur off renders it";
+        warnings.push(&desc.place, what);
+    }
+    blurred
 }
 
 /// Names of the light groups that lamps and emissive objects are in.

@@ -1,7 +1,7 @@
 //! What moves while the shutter is open.
 //!
 //! Times of the description are frames after the frame itself; those of rays are 0 where the shutter opens and 1
-//! where it closes. In between all times are as likely, as with Cycles' default shutter curve.
+//! where it closes. How likely each is in between says [`Exposure`](crate::camera::Exposure).
 
 use super::effects::emits;
 use crate::desc::{CameraDesc, InstanceDesc, Motion, SceneDesc, ShapeRef, Visibility};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Mesh, Rounds};
-use crate::math::{Affine3A, DAffine3, DVec3, Mat3A, Vec2, Vec3, Vec3A, place_point, traced};
+use crate::math::{Affine3A, DAffine3, DVec3, Mat3A, Vec2, Vec3, Vec3A, center_of, place_point, traced};
 
 /// A shape in its own space, shared by its instances. A point on it is a primitive, which is a triangle,
 /// a segment or a ball, with the two coordinates on that which a hit gives.
@@ -108,6 +108,26 @@ impl Shape {
                     size: transform.transform_vector3(local.axis).length_squared(),
                 }
             }
+        }
+    }
+
+    /// The points between which the point at `at` of `primitive` lies, and the share that each has in it: of a strand
+    /// it is one on the axis.
+    pub fn anchors(&self, primitive: u32, [u, v]: [f32; 2]) -> [(u32, f32); 3] {
+        match self {
+            Self::Mesh(mesh) => {
+                let [a, b, c] = mesh.triangles[primitive as usize];
+                [(a, 1.0 - u - v), (b, u), (c, v)]
+            }
+            Self::Rounds(rounds) => rounds.anchors(primitive, u),
+        }
+    }
+
+    /// Point `i` as modelled, of a strand or ball its centre.
+    pub fn anchor(&self, i: u32) -> Vec3 {
+        match self {
+            Self::Mesh(mesh) => mesh.points[i as usize],
+            Self::Rounds(rounds) => center_of(rounds.balls[i as usize]).as_vec3(),
         }
     }
 

@@ -118,6 +118,12 @@ impl Rounds {
         keys.iter().map(move |balls| [balls[first], balls[last]])
     }
 
+    /// Both ends of `segment`, and the share that each has in the point of the axis at `u`.
+    pub fn anchors(&self, segment: u32, u: f32) -> [(u32, f32); 3] {
+        let ([_, first, last, _], s) = (self.around(segment).map(|i| i as u32), share_of(u) as f32);
+        [(first, 1.0 - s), (last, s), (last, 0.0)]
+    }
+
     /// Material slot of `segment`.
     pub fn slot(&self, segment: u32) -> usize {
         self.material_slots.as_ref().map_or(0, |slots| usize::from(slots[segment as usize]))

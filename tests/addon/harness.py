@@ -2,7 +2,7 @@
 
     python harness.py JOB ANSWER.json [ARGUMENT...]
 
-JOB is a function of jobs.py or motion_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
+JOB is a function of jobs.py, motion_jobs.py or pass_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
 """
 
 import json
@@ -22,10 +22,12 @@ def main():
     addon_utils.enable(EXTENSION)
     import jobs
     import motion_jobs
+    import pass_jobs
 
     answer = {}
     try:
-        answer["result"] = getattr(motion_jobs if hasattr(motion_jobs, job) else jobs, job)(*arguments)
+        module = next(module for module in (jobs, motion_jobs, pass_jobs) if hasattr(module, job))
+        answer["result"] = getattr(module, job)(*arguments)
     except Exception as error:
         answer["error"] = f"{type(error).__name__}: {error}"
         answer["traceback"] = traceback.format_exc()

@@ -310,11 +310,26 @@ def empty_border(folder):
     return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
 
 
+def stereo(folder):
+    """A scene of two views."""
+    _scene().render.use_multiview = True
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
+def replaced_engine(folder):
+    """An engine that is not the one that was installed last."""
+    import penumbra
+
+    _scene()
+    penumbra.installed_as += "?"
+    return _complaint(lambda: _render(os.path.join(folder, "none.exr")))
+
+
 def left_out(folder):
     """What a scene may ask for that there is not yet, each told."""
     _scene()
     layer = bpy.context.view_layer
-    layer.use_pass_mist = layer.cycles.use_pass_shadow_catcher = True
+    layer.cycles.use_pass_volume_direct = True
     material = bpy.data.materials.new("Displaced")
     material.use_nodes = True
     tree = material.node_tree

@@ -152,7 +152,7 @@ def off():
 
 
 def changing_count():
-    """A mesh of another number of vertices at each time, and the curve of the shutter: what is told, by F12."""
+    """A mesh of another number of vertices at each time, and a zoom: what is told, by F12."""
     scene = _scene(spp=1)
     render = scene.render
     render.use_motion_blur, render.motion_blur_shutter = True, 1.0
@@ -161,9 +161,6 @@ def changing_count():
     _keyed(array, "count", [(1, 1), (9, 9)])
     # A constructive modifier moves nothing for Cycles unless it is animated in an object that deforms.
     grower.shape_key_add(name="Basis")
-    render.motion_blur_shutter_curve.curves[0].points[0].location = (0.0, 0.5)
-    render.motion_blur_shutter_curve.update()
-    scene.cycles.rolling_shutter_type = "TOP"
     _keyed(scene.camera.data, "lens", [(1, 30.0), (9, 90.0)])
     scene.frame_set(4)
     bpy.ops.render.render()

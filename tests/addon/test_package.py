@@ -7,7 +7,7 @@ import sys
 import zipfile
 
 import pytest
-from conftest import BLENDERS, HERE
+from conftest import BLENDERS, HERE, ROOT
 
 
 def blenders_tool(version):
@@ -51,6 +51,33 @@ def test_nothing_is_left_behind(extension, tmp_path, version):
         assert steps[step]["files"] == on["files"], step
     assert steps["disabled"]["held"] == before["held"]
     assert steps["uninstalled"] == before
+
+
+@pytest.mark.parametrize("version", sorted(BLENDERS))
+def test_an_engine_of_the_same_version_takes_the_place_of_another(extension, tmp_path, version):
+    """Blender keeps wheels by name and version; two builds of the same version are told apart all the same."""
+    wheel = tmp_path / "first.whl"
+    with zipfile.ZipFile(extension) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(".whl"))
+        wheel.write_bytes(archive.read(name))
+    edited = tmp_path / "edited" / name.partition("/")[2]
+    edited.parent.mkdir()
+    with zipfile.ZipFile(wheel) as source, zipfile.ZipFile(edited, "w") as target:
+        for info in source.infolist():
+            mark = b"\nEDITED = True\n" if info.filename == "penumbra/__init__.py" else b""
+            target.writestr(info, source.read(info) + mark)
+    command = [sys.executable, ROOT / "addon" / "build.py", "--out", tmp_path / "out", "--wheel", edited]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    other = done.stdout.strip().splitlines()[-1]
+    environment = {**os.environ, "BLENDER_USER_RESOURCES": str(tmp_path / "user")}
+    for package, is_edited in ((extension, False), (other, True), (extension, False)):
+        command = [str(part) for part in (BLENDERS[version], HERE / "install.py", package)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0 and "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
+        found = list((tmp_path / "user").rglob("site-packages/penumbra/__init__.py"))
+        assert len(found) == 1 and ("EDITED" in found[0].read_text()) == is_edited, package
+        assert len(list((tmp_path / "user").rglob("penumbra-*.dist-info"))) == 1
 
 
 # What `import penumbra` is to be capable of outside of Blender.

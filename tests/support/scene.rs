@@ -137,6 +137,9 @@ impl Builder {
             shift: [0.0; 2],
             lens: None,
             shutter: [0.0; 2],
+            shutter_curve: Vec::new(),
+            rolling_shutter: None,
+            zoom: Vec::new(),
             exposure: 1.0,
             motion: Vec::new(),
         });

@@ -1,26 +1,41 @@
 """The camera and what of the scene's settings frames the picture."""
 
+import math
+
 
 _PROJECTION = ("lens", "sensor_width", "sensor_height", "sensor_fit", "shift_x", "shift_y", "clip_start", "clip_end",
                "ortho_scale")
 
 
+# What Cycles takes where something else stands for the camera.
+_OTHERS = {"lens": 50.0, "sensor_width": 36.0, "sensor_height": 24.0, "sensor_fit": "AUTO", "shift_x": 0.0, "shift_y": 0.0,
+           "clip_start": 1e-5, "clip_end": 1e5, "ortho_scale": 1.0}
+# What it takes of lamps that are no spots: a new one's size.
+_SPOT_SIZE = math.pi / 4.0
+
+
 def projection(obj):
-    """How the camera object `obj` projects: names and values."""
-    return {name: getattr(obj.data, name) for name in _PROJECTION}
+    """How the object `obj` projects, which is a camera or stands for one: names and values."""
+    if obj.type == "CAMERA":
+        return {name: getattr(obj.data, name) for name in _PROJECTION}
+    if obj.type == "LIGHT":
+        return {**_OTHERS, "lens": 16.0 / math.tan(0.5 * getattr(obj.data, "spot_size", _SPOT_SIZE))}
+    return _OTHERS
 
 
 def camera(obj):
-    """The camera object `obj`, or None for none."""
-    if obj is None or obj.type != "CAMERA":
+    """The object `obj` as a camera, whatever it is, as Blender has it; None for none."""
+    if obj is None:
         return None
     data = obj.data
     result = {
         "name": obj.name,
         "matrix": [list(map(float, row)) for row in obj.matrix_world],
-        "type": data.type,
+        "type": data.type if obj.type == "CAMERA" else "PERSP",
         **projection(obj),
     }
+    if obj.type != "CAMERA":
+        return result
     dof = data.dof
     if dof.use_dof:
         result["dof"] = {

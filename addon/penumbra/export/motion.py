@@ -1,4 +1,5 @@
-"""What moves while the shutter is open: the frame is set to each time at which something has a key, as in Cycles."""
+"""What moves while the shutter is open, or from frame to frame: the frame is set to each time at which something has a
+key, as in Cycles."""
 
 import math
 
@@ -18,7 +19,7 @@ def is_on(scene, view_layer):
 
 
 class Motion:
-    """Gathers for one render where things are at other times of the shutter.
+    """Gathers for one render with motion blur where things are at other times of the shutter.
 
     `frame_set` takes a frame and a part of one; `stopped` says whether the artist wants no picture any more. Times are
     in shares of the shutter until they are handed over, in frames after the frame.
@@ -38,12 +39,33 @@ class Motion:
         self._points = {}
         # What is placed at other times: [(frames after the frame, indices, matrices)].
         self._moved = []
-        self.warnings = _not_rendered(scene)
+        # How the camera projects where it zooms: [[frames after the frame, names and values]].
+        self.zoom = []
+        self.warnings = set()
 
     @property
     def shutter(self):
         """When it opens and closes, frames after the frame."""
         return [self._after(0.0), self._after(1.0)]
+
+    def exposure(self):
+        """What the document says of how the picture is exposed while the shutter is open."""
+        result = {"shutter": self.shutter}
+        curve = _opening(self._scene.render.motion_blur_shutter_curve)
+        if max(curve) != min(curve):
+            result["shutter_curve"] = curve
+        cycles = getattr(self._scene, "cycles", None)
+        if getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
+            result["rolling_shutter"] = cycles.rolling_shutter_duration
+        return result
+
+    def _times(self, obj, parent):
+        """Times of an object's keys."""
+        return _times(obj, parent)
+
+    def _deforms(self, obj, parent):
+        """True where the shape of an object may be another at those times."""
+        return _setting("use_deform_motion", obj, parent)
 
     def _after(self, share):
         return (share - self._at_frame) * self._length
@@ -52,13 +74,13 @@ class Motion:
         """An instance of the frame: indices of what is placed with it, and their shapes as (key, modifier of the hair)."""
         obj = instance.object
         parent = instance.parent if instance.is_instance else None
-        times = _times(obj, parent)
+        times = self._times(obj, parent)
         if not indices or not times:
             return
         identity = identity_of(instance)
         self._placed[identity] = (indices, matrix, times)
         for key, modifier in shapes:
-            if key in self._shapes or key in self._points or not _setting("use_deform_motion", obj, parent):
+            if key in self._shapes or key in self._points or not self._deforms(obj, parent):
                 continue
             flowing = None if modifier else self._flowing(obj)
             if flowing is not None:
@@ -76,18 +98,18 @@ class Motion:
         velocity.data.foreach_get("vector", speed)
         if points.shape != speed.shape:
             return None
-        ends = [time for time in self.shutter if time != 0.0]
+        ends = [time for time in (self._after(0.0), self._after(1.0)) if time != 0.0]
         return [(time, points + np.float32(time / self._per_second) * speed) for time in ends]
 
     def gather(self, depsgraph, camera_object, lamps):
-        """Goes through the shutter and back to the frame; returns the camera's motion as [[time, matrix]].
+        """Goes through all times and back to the frame; returns the camera's motion as [[time, matrix]].
 
         `lamps` are the records of lamps by identity: they stand still where they are in the middle of the shutter, as
         in Cycles.
         """
         of_camera = []
-        has_camera = camera_object is not None and camera_object.type == "CAMERA"
-        camera_times = _times(camera_object, None) if has_camera else frozenset()
+        has_camera = camera_object is not None
+        camera_times = self._times(camera_object, None) if has_camera else frozenset()
         lens = camera.projection(camera_object.evaluated_get(depsgraph)) if has_camera else None
         times = set(camera_times).union(*(thing[-1] for thing in (*self._placed.values(), *self._shapes.values())))
         if lamps:
@@ -103,10 +125,14 @@ class Motion:
                     now = camera_object.original.evaluated_get(depsgraph)
                     of_camera.append([self._after(share), [list(map(float, row)) for row in now.matrix_world]])
                     if camera.projection(now) != lens:
-                        self.warnings.add("the camera zooms while the shutter is open: that is not blurred")
+                        self._note_zoom(self._after(share), now)
         finally:
             self._frame_set(self._frame, self._subframe)
         return of_camera
+
+    def _note_zoom(self, _after, _camera_object):
+        """The camera has another lens at a time."""
+        self.warnings.add("the camera zooms while the shutter is open: that is not blurred")
 
     def _go_to(self, after):
         time = self._frame + self._subframe + after
@@ -148,6 +174,35 @@ class Motion:
                 scene.add_instance_motion(time, np.asarray(indices, np.uint32), np.asarray(matrices, np.float32))
 
 
+class Vectors(Motion):
+    """Gathers for the vector pass where things are at the frames before and after: all of them, whatever their settings
+    of motion blur.
+    """
+
+    def __init__(self, scene, frame_set, stopped):
+        super().__init__(scene, frame_set, stopped)
+        self._length, self._at_frame = 2.0, 0.5
+
+    def exposure(self):
+        """The shutter is open for an instant."""
+        return {}
+
+    def _note_zoom(self, after, camera_object):
+        kind = camera_object.data.type if camera_object.type == "CAMERA" else "PERSP"
+        if kind != "PANO":
+            self.zoom.append([after, {"type": kind, **camera.projection(camera_object)}])
+
+    def _times(self, obj, parent):
+        return _FRAMES
+
+    def _deforms(self, obj, parent):
+        return True
+
+
+# The frames before and after as shares of the time between them.
+_FRAMES = frozenset((0.0, 1.0))
+
+
 def identity_of(instance):
     """What an instance is known by at any frame."""
     obj = instance.object
@@ -185,12 +240,12 @@ def _points(instance, modifier, render):
         obj.to_mesh_clear()
 
 
-def _not_rendered(scene):
-    """Settings of motion blur that make no difference, as messages."""
-    told = set()
-    curve = scene.render.motion_blur_shutter_curve.curves[0]
-    if len({point.location.y for point in curve.points}) > 1:
-        told.add("the shutter curve is not flat: the shutter is taken to be wide open for all of its time")
-    if getattr(getattr(scene, "cycles", None), "rolling_shutter_type", "NONE") != "NONE":
-        told.add("the rolling shutter is not rendered: all of the picture is exposed at once")
-    return told
+# Cycles looks a shutter's curve up at so many times.
+_LOOKUPS = 256
+
+
+def _opening(mapping):
+    """How far a shutter is open, from its opening to its closing at even steps."""
+    mapping.update()
+    curve = mapping.curves[0]
+    return [mapping.evaluate(curve, i / (_LOOKUPS - 1)) for i in range(_LOOKUPS)]

@@ -67,7 +67,7 @@ class Exporter:
     def export(self, depsgraph, size, camera_object=None, space=None, motion=None):
         """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows.
 
-        `motion` gathers what moves while the shutter is open.
+        `motion` gathers what moves while the shutter is open, or from frame to frame.
         """
         self._motion = motion
         self._layer = depsgraph.view_layer
@@ -128,10 +128,10 @@ class Exporter:
             "objects": self._objects,
         }
         if motion is not None:
-            document["render"]["shutter"] = motion.shutter
+            document["render"].update(motion.exposure())
             of_camera = motion.gather(depsgraph, through, lamps)
             if document["camera"] is not None:
-                document["camera"]["motion"] = of_camera
+                document["camera"].update(motion=of_camera, zoom=motion.zoom)
         self.scene.set_document(self._json(document))
         self.scene.set_materials(self._materials)
         self._known_materials &= set(self._materials)
@@ -159,8 +159,10 @@ class Exporter:
         try:
             return json.dumps(document, allow_nan=False)
         except ValueError:
-            self.warnings.append("some properties are not finite numbers; 0 is used for them")
-            return json.dumps(_finite(document))
+            found = {}
+            finite = _finite(document, (), found)
+            self.warnings += [f"{where}: {', '.join(sorted(names))}: not finite; 0 is used" for where, names in found.items()]
+            return json.dumps(finite)
 
     def _instancer(self, parent):
         """What tells apart the records of one object: what instances it, where materials ask for that."""
@@ -362,13 +364,19 @@ def _shown(instance, space):
     return obj.original.visible_in_viewport_get(space)
 
 
-def _finite(value):
-    """`value` with 0 for every number that is not finite."""
+def _finite(value, where, found):
+    """`value` with 0 for every number that is not finite.
+
+    `where` it stands are names, the last one that of a property; `found` gets the properties by what they belong to.
+    """
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        named = (*where[:-1], value["name"]) if isinstance(value.get("name"), str) else where
+        return {key: _finite(item, (*named, key), found) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
+        return [_finite(item, where, found) for item in value]
     if isinstance(value, float) and not np.isfinite(value):
+        *holders, name = where
+        found.setdefault(" > ".join(holder for holder in holders if holder != "nodes") or "scene", set()).add(name)
         return 0.0
     return value
 

@@ -5,12 +5,42 @@ use std::f64::consts::PI;
 use super::document::{CameraData, DofData, RenderData};
 use super::motion;
 use super::transform::affine;
-use crate::desc::{CameraDesc, LensDesc, ProjectionDesc};
+use crate::desc::{CameraDesc, LensDesc, Motion, ProjectionDesc};
 use crate::error::{Place, Warnings};
 
 /// The camera as it frames a picture of `render`'s size.
 pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &mut Warnings) -> CameraDesc {
     let place = place.at(&data.name);
+    let (projection, frame) = projection(data, render, &place, warnings);
+    let zoom = zoom(data, render, &place);
+    let transform = affine(&data.matrix);
+    let is_flat = data.r#type == "ORTHO";
+    let lens = data.dof.map(|dof| lens(&dof, data.lens, is_flat));
+    CameraDesc {
+        name: data.name.as_str().into(),
+        place,
+        transform,
+        projection,
+        clip_near: if is_flat { data.clip_start.max(0.0) } else { data.clip_start },
+        clip_far: data.clip_end,
+        shift: [data.shift_x / frame[0], data.shift_y / frame[1]],
+        lens,
+        shutter: render.shutter,
+        shutter_curve: render.shutter_curve.clone(),
+        rolling_shutter: render.rolling_shutter,
+        exposure: render.exposure,
+        zoom,
+        motion: motion::keys(&transform, data.motion.iter().map(|(time, matrix)| (*time, affine(matrix)))),
+    }
+}
+
+/// How the camera projects, and the sizes of its frame, the fitted side being 1.
+fn projection(
+    data: &CameraData,
+    render: &RenderData,
+    place: &Place,
+    warnings: &mut Warnings,
+) -> (ProjectionDesc, [f64; 2]) {
     let [width, height] = [0, 1].map(|i| f64::from(render.size[i].max(1)) * render.pixel_aspect[i].max(1e-6));
     let fits_x = match data.sensor_fit.as_str() {
         "HORIZONTAL" => true,
@@ -19,7 +49,6 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
     };
     // Only an explicit vertical fit measures the sensor's height.
     let sensor = if data.sensor_fit == "VERTICAL" { data.sensor_height } else { data.sensor_width };
-    // Sizes of the frame, the fitted side being 1.
     let frame = if fits_x { [1.0, height / width] } else { [width / height, 1.0] };
     let orthographic = ProjectionDesc::Orthographic {
         half_width: 0.5 * data.ortho_scale * frame[0],
@@ -38,37 +67,32 @@ pub fn camera(data: &CameraData, render: &RenderData, place: &Place, warnings: &
         },
         "PANO" => {
             let kind = &data.panorama.panorama_type;
-            warnings.push(&place, format!("{kind} panoramas are not supported: taken as equirectangular"));
+            warnings.push(place, format!("{kind} panoramas are not supported: taken as equirectangular"));
             ProjectionDesc::Equirectangular { longitude: [-PI, PI], latitude: [-0.5 * PI, 0.5 * PI] }
         }
         other => {
-            warnings.push(&place, format!("a camera of the unknown type {other}: taken as a perspective one"));
+            warnings.push(place, format!("a camera of the unknown type {other}: taken as a perspective one"));
             perspective()
         }
     };
-    let transform = affine(&data.matrix);
-    let is_flat = data.r#type == "ORTHO";
-    let lens = data.dof.map(|dof| lens(&dof, data.lens, is_flat));
-    CameraDesc {
-        name: data.name.as_str().into(),
-        place,
-        transform,
-        projection,
-        clip_near: if is_flat { data.clip_start.max(0.0) } else { data.clip_start },
-        clip_far: data.clip_end,
-        shift: [data.shift_x / frame[0], data.shift_y / frame[1]],
-        lens,
-        shutter: render.shutter,
-        exposure: render.exposure,
-        motion: motion::keys(&transform, data.motion.iter().map(|(time, matrix)| (*time, affine(matrix)))),
-    }
+    (projection, frame)
 }
+
+/// How it projects at other frames.
+fn zoom(data: &CameraData, render: &RenderData, place: &Place) -> Vec<Motion<ProjectionDesc>> {
+    // What is wrong with its projection was told for the frame.
+    let at = |then: &CameraData| projection(then, render, place, &mut Warnings::new()).0;
+    data.zoom.iter().map(|(time, then)| Motion { time: *time, value: at(then) }).collect()
+}
+
+/// Cycles takes no lens to be wider open.
+const LEAST_FSTOP: f64 = 1e-5;
 
 /// The lens of a focal length in millimetres; parallel rays have that of a metre.
 pub(super) fn lens(dof: &DofData, focal: f64, orthographic: bool) -> LensDesc {
     let focal = if orthographic { 1.0 } else { 1e-3 * focal };
     LensDesc {
-        aperture_radius: focal / (2.0 * dof.fstop),
+        aperture_radius: focal / (2.0 * dof.fstop.max(LEAST_FSTOP)),
         focus_distance: dof.distance,
         blades: dof.blades,
         rotation: dof.rotation,
@@ -116,5 +140,8 @@ mod tests {
         let lens = made(CameraData { dof, ..CameraData::default() }, [100, 100]).lens.unwrap();
         assert!((lens.aperture_radius - 0.05 / 5.6).abs() < 1e-12);
         assert_eq!(lens.focus_distance, 3.0);
+        let open = Some(DofData { distance: 3.0, fstop: 0.0, ..DofData::default() });
+        let lens = made(CameraData { dof: open, ..CameraData::default() }, [100, 100]).lens.unwrap();
+        assert!((lens.aperture_radius - 2500.0).abs() < 1e-6);
     }
 }

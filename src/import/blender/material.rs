@@ -17,23 +17,26 @@ pub fn materials(
 ) {
     let place = desc.place.clone();
     desc.materials = document.materials.iter().map(|data| material(data, images, uv_sets, &place, warnings)).collect();
-    desc.materials.extend(default_material(document));
+    desc.materials.push(default_material(document));
 }
 
-/// Index of the material of slots without one; `None` where the engine's own default is meant.
-pub fn default_index(document: &Document) -> Option<u32> {
-    default_material(document).map(|_| document.materials.len() as u32)
+/// Index of the material of slots without one.
+pub fn default_index(document: &Document) -> u32 {
+    document.materials.len() as u32
 }
+
+/// What Cycles calls the material of what has none, in Cryptomatte.
+const DEFAULT: &str = "default_surface";
 
 /// Up to Blender 4.5 what has no material is a matt 0.8; since 5.0 it is the Principled BSDF's default, which
 /// is the engine's, too.
-fn default_material(document: &Document) -> Option<MaterialDesc> {
-    let plain = ScalarInput::constant;
-    (1..5).contains(&document.version[0]).then(|| MaterialDesc {
-        roughness: plain(1.0),
-        specular: plain(0.0),
-        ..MaterialDesc::default()
-    })
+fn default_material(document: &Document) -> MaterialDesc {
+    let named = MaterialDesc { name: DEFAULT.into(), ..MaterialDesc::default() };
+    if (1..5).contains(&document.version[0]) {
+        let plain = ScalarInput::constant;
+        return MaterialDesc { roughness: plain(1.0), specular: plain(0.0), ..named };
+    }
+    named
 }
 
 fn material(

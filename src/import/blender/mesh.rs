@@ -8,9 +8,14 @@ use super::motion::{self, MovedPoints};
 use crate::desc::{Attribute, MeshDesc, NamedAttribute};
 use crate::error::{Error, Place, Result, Warnings};
 use crate::import::tangents;
+use crate::math::Cluster;
 
 /// Nothing can be computed with a vertex that is farther out: about where `f32` can't hold squares any more.
 const REACH: f32 = 1e18;
+
+/// Triangles to a vertex that is so many times farther off than most would be met where they are not: `f32` has seven
+/// digits.
+const MOST_SPREADS: f64 = 1e8;
 
 /// The arrays of an evaluated mesh, as `foreach_get` fills them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -73,7 +78,7 @@ pub fn tangents_of(uv_map: &str) -> String {
 impl NamedMesh {
     /// Takes in where its points are at other times of the shutter. Points that move out of number or whose count
     /// changes are told, and stand still.
-    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], warnings: &mut Warnings) {
+    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], blurred: bool, warnings: &mut Warnings) {
         self.dressed = None;
         let mesh = Arc::make_mut(&mut self.mesh);
         let count = mesh.points.len();
@@ -83,7 +88,7 @@ impl NamedMesh {
         mesh.motion = if moved.iter().all(|moved| fits(moved) && finite(moved)) {
             motion::keys(&mesh.points, moved.iter().map(points))
         } else {
-            motion::tell_of_still(&mesh.name, &mesh.place, moved.iter().all(fits), warnings);
+            motion::tell_of_still(&mesh.name, &mesh.place, moved.iter().all(fits), blurred, warnings);
             Vec::new()
         };
     }
@@ -133,8 +138,8 @@ impl NamedMesh {
 /// The mesh of `arrays`, with UV maps, colour attributes, and other attributes as colors, too.
 ///
 /// # Errors
-/// Arrays whose lengths or indices don't fit together. Vertices that are not finite or beyond
-/// [`REACH`] are told, and the triangles at them left out.
+/// Arrays whose lengths or indices don't fit together. Vertices that are not finite, beyond
+/// [`REACH`], or [`MOST_SPREADS`] away from most are told, and the triangles at them left out.
 pub fn mesh(
     name: &str,
     place: &Place,
@@ -156,7 +161,10 @@ pub fn mesh(
         return Err(broken(format!("refers to corner {index} of {corners}")));
     }
     // So that those beyond reach are left out of every box, too.
-    let within = |p: &[f32; 3]| p.map(|x| if x.abs() > REACH { f32::NAN } else { x });
+    let most = Cluster::of(arrays.positions.as_chunks::<3>().0).filter(|most| most.spread > 0.0);
+    let is_far = |p: &[f32; 3]| most.is_some_and(|most| most.distance(*p) > MOST_SPREADS);
+    let within =
+        |p: &[f32; 3]| if is_far(p) { [f32::NAN; 3] } else { p.map(|x| if x.abs() > REACH { f32::NAN } else { x }) };
     let positions: Vec<[f32; 3]> = arrays.positions.as_chunks::<3>().0.par_iter().map(within).collect();
     let corners_of: &[[i32; 3]] = arrays.triangles.as_chunks::<3>().0;
     let vertex = |corner: i32| arrays.corner_verts[corner as usize] as u32;
@@ -363,8 +371,19 @@ mod tests {
 
     #[test]
     fn triangles_at_a_vertex_beyond_reach_are_left_out_and_told() {
-        for (x, left) in [(1e30, 1), (-1e30, 1), (f32::INFINITY, 1), (1e17, 2)] {
-            let mut positions = POSITIONS;
+        let huge = POSITIONS.map(|x| 1e16 * x);
+        for (quad_of, x, left) in [
+            (POSITIONS, 1e30, 1),
+            (POSITIONS, -1e30, 1),
+            (POSITIONS, f32::INFINITY, 1),
+            // Farther off than all others by more than numbers can tell.
+            (POSITIONS, 1e10, 1),
+            (POSITIONS, 1e7, 2),
+            // As far off as the others.
+            (huge, 1e17, 2),
+            (huge, 1e19, 1),
+        ] {
+            let mut positions = quad_of;
             positions[3] = x;
             let (mesh, said) = built(&MeshArrays { positions: &positions, ..quad() }, &[]);
             assert_eq!(mesh.unwrap().mesh.triangles.len(), left, "{x}");

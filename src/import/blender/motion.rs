@@ -29,12 +29,12 @@ pub(super) fn keys<T: Clone + PartialEq>(now: &T, others: impl IntoIterator<Item
     keys
 }
 
-/// Tells of a shape whose points can't be followed through the shutter: their number changes, or they are not finite.
-pub(super) fn tell_of_still(name: &str, place: &Place, same_count: bool, warnings: &mut Warnings) {
+/// Tells of a shape whose points can't be followed, through the shutter or from frame to frame: their number changes,
+/// or they are not finite.
+pub(super) fn tell_of_still(name: &str, place: &Place, same_count: bool, blurred: bool, warnings: &mut Warnings) {
     let why = if same_count { "are not all finite" } else { "change in number" };
-    let what = format!(
-        "the points of \"{name}\" {why} while the shutter is open; it keeps the shape that it has at the frame"
-    );
+    let when = if blurred { "while the shutter is open" } else { "from frame to frame" };
+    let what = format!("the points of \"{name}\" {why} {when}; it keeps the shape that it has at the frame");
     warnings.push(place, what);
 }
 

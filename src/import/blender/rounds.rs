@@ -72,7 +72,7 @@ fn usable(points: &[[f32; 3]], radii: &[f32], range: &Range<usize>) -> bool {
 impl NamedRounds {
     /// Takes in where the points are at other times of the shutter. Points that move out of number or whose count
     /// changes are told, and stand still.
-    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], warnings: &mut Warnings) {
+    pub fn set_motion(&mut self, moved: &[MovedPoints<'_>], blurred: bool, warnings: &mut Warnings) {
         let Some(source) = &self.source else { return };
         self.dressed = None;
         let fits = |moved: &MovedPoints<'_>| moved.positions.len() == 3 * source.points.len();
@@ -83,7 +83,7 @@ impl NamedRounds {
         if same_count && others.iter().flat_map(|(_, points)| points).flatten().all(|x| x.is_finite()) {
             rounds.motion = motion::keys(&rounds.points, others);
         } else {
-            motion::tell_of_still(&rounds.name, &rounds.place, same_count, warnings);
+            motion::tell_of_still(&rounds.name, &rounds.place, same_count, blurred, warnings);
             rounds.motion.clear();
         }
     }
@@ -235,7 +235,7 @@ mod tests {
         let still = made.dressed(&[]);
         assert!(still.motion.is_empty());
         let moved = [9.0, 9.0, 9.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.5, 1.0, 1.0, 0.5];
-        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved }], &mut warnings);
+        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved }], true, &mut warnings);
         let desc = made.dressed(&[]);
         assert_eq!((desc.motion.len(), desc.motion[0].time, &desc.motion[0].value), (2, 0.0, &still.points));
         let after = &desc.motion[1];
@@ -243,7 +243,7 @@ mod tests {
         let lifted = |(now, then): (&[f32; 3], &[f32; 3])| now[..2] == then[..2] && (then[2] - 0.5).abs() < 1e-6;
         assert!(still.points.iter().zip(&after.value).all(lifted), "{:?}", after.value);
         assert_eq!(warnings.len(), 1);
-        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved[3..] }], &mut warnings);
+        made.set_motion(&[MovedPoints { time: 0.5, positions: &moved[3..] }], true, &mut warnings);
         assert!(made.dressed(&[]).motion.is_empty() && warnings.len() == 2);
     }
 

@@ -127,13 +127,15 @@ impl BlenderScene {
         Ok(())
     }
 
-    /// Takes in where the points of the shape `key` are at other times of the shutter.
+    /// Takes in where the points of the shape `key` are at other times: of the shutter, which the document has told by
+    /// now, or of the frames before and after.
     pub fn set_shape_motion(&mut self, key: u64, moved: &[MovedPoints<'_>]) {
+        let blurred = self.document.render.shutter != [0.0; 2];
         let warnings = self.of_shapes.entry(key).or_default();
         if let Some(mesh) = self.meshes.get_mut(&key) {
-            mesh.set_motion(moved, warnings);
+            mesh.set_motion(moved, blurred, warnings);
         } else if let Some(rounds) = self.rounds.get_mut(&key) {
-            rounds.set_motion(moved, warnings);
+            rounds.set_motion(moved, blurred, warnings);
         }
     }
 
@@ -268,9 +270,9 @@ impl BlenderScene {
                 shape,
                 transform,
                 motion: self.moved.of(number as u32, &transform),
-                materials: match (data.materials.as_slice(), default) {
-                    ([], Some(_)) => vec![default],
-                    (slots, _) => slots.iter().map(|slot| slot.or(default)).collect(),
+                materials: match data.materials.as_slice() {
+                    [] => vec![Some(default)],
+                    slots => slots.iter().map(|slot| Some(slot.unwrap_or(default))).collect(),
                 },
                 object_index: data.pass_index,
                 color: None,

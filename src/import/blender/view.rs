@@ -63,6 +63,9 @@ impl ViewData {
             shift,
             lens: self.dof.map(|(dof, focal)| lens(&dof, focal, self.orthographic)),
             shutter: [0.0; 2],
+            shutter_curve: Vec::new(),
+            rolling_shutter: None,
+            zoom: Vec::new(),
             exposure,
             motion: Vec::new(),
         }

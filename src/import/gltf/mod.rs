@@ -19,6 +19,7 @@ mod document;
 mod draco;
 mod extras;
 mod fields;
+mod frames;
 mod instancing;
 mod json;
 mod lamp;
@@ -68,12 +69,24 @@ pub fn from_bytes(
     let root = document::parse(container.json, place, warnings)?;
     let buffers = buffer::Buffers::load(&root, container.bin, base_dir, place)?;
     let reader = accessor::Reader { root: &root, buffers: &buffers };
-    let posed = match options.frame {
-        Some(frame) if !root.animations.is_empty() => {
-            Some(animation::pose(container.json, reader, frame / options.fps, place, warnings)?)
-        }
-        _ => None,
+    let build = |root: &json::Root, moving: bool, warnings: &mut Warnings| {
+        let reader = accessor::Reader { root, buffers: &buffers };
+        scene::Builder { reader, base_dir, place, options, file_size: bytes.len(), moving }.build(warnings)
     };
-    let reader = accessor::Reader { root: posed.as_ref().unwrap_or(&root), buffers: &buffers };
-    scene::Builder { reader, base_dir, place, options, file_size: bytes.len() }.build(warnings)
+    let Some(frame) = options.frame.filter(|_| !root.animations.is_empty()) else {
+        if options.vectors && !root.animations.is_empty() {
+            warnings.push(place, "the vector pass is asked for, but no frame is given: nothing moves");
+        }
+        return build(&root, false, warnings);
+    };
+    let at = |frame: f64, moving: bool, warnings: &mut Warnings| {
+        build(&animation::pose(container.json, reader, frame / options.fps, place, warnings)?, moving, warnings)
+    };
+    let mut scene = at(frame, false, warnings)?;
+    if options.vectors {
+        // What is wrong with the file was told for the frame itself.
+        let then = |after: f64| Ok((after, at(frame + after, true, &mut Warnings::new())?));
+        frames::add(&mut scene, &[then(-1.0)?, then(1.0)?]);
+    }
+    Ok(scene)
 }

@@ -34,6 +34,8 @@ pub(super) struct Builder<'a> {
     pub options: &'a ImportOptions,
     /// Bytes of the file itself.
     pub file_size: usize,
+    /// True where nothing counts but where things are: no image is decoded.
+    pub moving: bool,
 }
 
 /// A mesh in one state of deformation: what nodes can share.
@@ -159,6 +161,9 @@ impl Builder<'_> {
         for &index in used {
             let mut collect = Lookup::Collect(&mut wishes);
             material::convert(index, json(index), &mut collect, self.place, &mut Warnings::new());
+        }
+        if self.moving {
+            wishes.clear();
         }
         let table = TextureTable::load(self.reader, &wishes, self.base_dir, self.place, warnings);
         let mut lookup = Lookup::Table(&table);
@@ -369,6 +374,9 @@ impl Builder<'_> {
                 shift: [0.0; 2],
                 lens: None,
                 shutter: [0.0; 2],
+                shutter_curve: Vec::new(),
+                rolling_shutter: None,
+                zoom: Vec::new(),
                 exposure: 1.0,
                 motion: Vec::new(),
             }),

@@ -53,6 +53,9 @@ pub(super) fn read(reading: &Reading<'_>, placed: &Placed) -> Option<CameraDesc>
         shift: [offset[0] / aperture[0], offset[1] / aperture[1]],
         lens: lens(&values, focal_length),
         shutter: shutter(&values),
+        shutter_curve: Vec::new(),
+        rolling_shutter: None,
+        zoom: Vec::new(),
         exposure: exposure(&values),
         motion: placed.motion.clone(),
     })

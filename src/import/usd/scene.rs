@@ -22,7 +22,8 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
     let (render, places_of_aovs) = render::read(reading);
     let mut scene =
         SceneDesc { place: reading.place.clone(), render, variants: offered(reading), ..SceneDesc::default() };
-    let haul = gather(reading);
+    let vectors = reading.options.vectors || scene.render.passes.iter().any(|pass| &**pass == "vector");
+    let haul = gather(reading, vectors);
     pulse::rest();
     let mut images = Images::default();
     let shape_lights = lights_and_cameras(reading, &haul, &mut images, &mut scene);
@@ -52,13 +53,26 @@ fn aside(kind: &str) -> bool {
 }
 
 /// Everything that is shown; read anew where a camera's shutter is open for longer than an instant, which
-/// is known only when all was seen.
-fn gather(reading: &Reading<'_>) -> Haul {
+/// is known only when all was seen. With `vectors` from the frame before to the frame after, too.
+fn gather(reading: &Reading<'_>, vectors: bool) -> Haul {
     let haul = crew::gather(reading, aside);
-    let Some(shutter) = shutter(reading, &haul) else { return haul };
+    let frames = frames(reading, vectors);
+    let spans = [shutter(reading, &haul), frames].into_iter().flatten();
+    let Some(shutter) = spans.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else { return haul };
     reading.shutter.set(Some(shutter));
     reading.crew.borrow_mut().clear();
     crew::gather(reading, aside)
+}
+
+/// From the frame before to the frame after, for the vector pass.
+fn frames(reading: &Reading<'_>, vectors: bool) -> Option<[f64; 2]> {
+    if vectors && reading.time.is_earliest_time() {
+        let what =
+            "the vector pass is asked for, but the stage has no startTimeCode, and no frame is given: nothing moves";
+        reading.warnings.borrow_mut().push(&reading.place, what);
+        return None;
+    }
+    vectors.then_some([-1.0, 1.0])
 }
 
 /// From when to when a camera's shutter is open, in time codes after the frame.

@@ -21,7 +21,7 @@ pub(super) fn add_lamps(scene: &Scene, path: &Path<'_>, segment: [f32; 2], sampl
             None if light.rules.seen.camera => {
                 let l = path.unscattered(le);
                 sample.emission += l;
-                sample.denoising_albedo += le;
+                path.tell_denoiser(l, sample);
                 add_unscattered(sample, &light.rules, l);
             }
             None => {}
@@ -50,6 +50,7 @@ pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelS
             None if light.rules.seen.camera => {
                 let l = path.unscattered(le);
                 sample.environment += l;
+                path.tell_denoiser(l, sample);
                 if !scene.film_transparent {
                     add_unscattered(sample, &light.rules, l);
                 }
@@ -75,7 +76,7 @@ pub(super) fn add_emission(scene: &Scene, path: &Path<'_>, it: &Interaction, opa
         None => {
             let l = path.unscattered(le);
             sample.emission += l;
-            sample.denoising_albedo += le;
+            path.tell_denoiser(l, sample);
             add_unscattered(sample, rules, l);
         }
         Some(last) => path.add_found(last, rules, le * mesh_weight(scene, last, it), sample),
@@ -88,6 +89,13 @@ impl Path<'_> {
         self.limits.clamp(self.beta * le, 0)
     }
 
+    /// What shines where a denoiser's albedo is still looked for, with radiance `l` in the picture, is part of it.
+    fn tell_denoiser(&self, l: Rgb, sample: &mut PixelSample) {
+        if let Some(look) = &self.look {
+            sample.denoising_albedo += look.throughput * l;
+        }
+    }
+
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
     /// weight. Lights with shadow rules of their own are counted where the ray begins.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
@@ -97,6 +105,7 @@ impl Path<'_> {
         }
         let l = seen(last.shares, rules) * (self.beta * le);
         let l = l * self.limits.factor(l.sum(), self.scatterings);
+        self.tell_denoiser(l.sum(), sample);
         if self.scatterings == 1 {
             add_direct(sample, rules, l);
         } else {

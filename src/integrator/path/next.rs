@@ -2,7 +2,7 @@
 
 use super::Path;
 use crate::film::PixelSample;
-use crate::integrator::first_hit::describe_shape;
+use crate::integrator::first_hit::{add_mist, describe_shape};
 use crate::integrator::limits::Limits;
 use crate::math::{Ray, Rgb};
 use crate::sampling::{Decision, Dimension, Sampler};
@@ -23,7 +23,7 @@ pub(super) fn next_surface(
     scene: &Scene,
     sampler: &Sampler,
     path: &mut Path<'_>,
-    mut visit: impl FnMut(&Path<'_>, Met<'_>),
+    mut visit: impl FnMut(&mut Path<'_>, Met<'_>),
 ) -> Option<Interaction> {
     loop {
         let Some(hit) = scene.closest_hit(&path.ray, path.mask) else {
@@ -76,6 +76,8 @@ pub struct First {
     pub media: Media,
     /// What is left there of light, by what has absorbed it on the way.
     pub left: Rgb,
+    /// How far it is from where the ray begins.
+    pub travelled: f32,
 }
 
 /// The first surface; what the ray has met is told to `sample`.
@@ -88,9 +90,14 @@ pub fn first_surface(
 ) -> Option<First> {
     let mut path = Path::from_camera(scene, ray, cone, &Limits::NONE);
     let mut described = !(scene.effects.geometry || scene.effects.aovs);
-    let surface = next_surface(scene, sampler, &mut path, |_, met| match met {
-        Met::Surface(it, coverage) if !described => described = describe_shape(scene, it, coverage.alpha(), sample),
-        _ => {}
+    let surface = next_surface(scene, sampler, &mut path, |path, met| {
+        let Met::Surface(it, coverage) = met else { return };
+        if scene.effects.mist {
+            add_mist(scene, it, path.beta.mean(), coverage.alpha(), sample);
+        }
+        if !described {
+            described = describe_shape(scene, it, coverage.alpha(), sample);
+        }
     });
     if surface.is_none() && !described {
         scene.add_background_aovs(path.ray.d, &mut sample.aovs);
@@ -100,5 +107,6 @@ pub fn first_surface(
         vertex: path.vertex,
         media: path.media,
         left: path.left,
+        travelled: path.travelled,
     })
 }

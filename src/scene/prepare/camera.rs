@@ -107,7 +107,7 @@ pub fn prepare(
 }
 
 /// `desc` as it stands at the frame.
-fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
+pub(super) fn still(desc: &CameraDesc, render: &RenderDesc, size: [u32; 2], origin: DVec3) -> Camera {
     let rigid = rigid(&desc.transform);
     let axes = rigid.matrix3;
     let view = camera::View {
@@ -203,6 +203,9 @@ mod tests {
             shift,
             lens: None,
             shutter: [0.0; 2],
+            shutter_curve: Vec::new(),
+            rolling_shutter: None,
+            zoom: Vec::new(),
             exposure: 1.0,
             motion: Vec::new(),
         }

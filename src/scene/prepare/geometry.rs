@@ -9,7 +9,7 @@ use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
 use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef, TerminatorDesc};
 use crate::error::Warnings;
-use crate::math::{Bounds, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
+use crate::math::{Bounds, Cluster, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
 use crate::scene::shutter::{Keys, Shutter};
 use crate::scene::{Instance, Material, mask};
 use crate::shape::{self, Mesh, MeshMotion, Placement, RoundMotion, Rounds, Shape};
@@ -110,10 +110,17 @@ pub fn prepare(
     Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides, absorbing }
 }
 
-/// The middle of the box of `points`, and the points relative to it.
+/// Boxes are so much larger than what most of their points span only where a few of them are far away.
+const ODD: f64 = 1e4;
+
+/// The middle of the box of `points`, and the points relative to it. Where a few of them are far from all others it is
+/// the middle of those: they have the digits that they need.
 fn centered(points: &[[f32; 3]]) -> (DVec3, impl Iterator<Item = Vec3>) {
     let bounds = Bounds::of_points(points.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()));
-    let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
+    let middle = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min.as_dvec3() + bounds.max.as_dvec3()) };
+    let half = f64::from((bounds.max - bounds.min).max_element()) * 0.5;
+    let most = Cluster::of(points).filter(|most| most.spread > 0.0 && half > ODD * most.spread);
+    let center = most.map_or(middle, |most| most.middle);
     (center, relative(points, center))
 }
 
@@ -122,7 +129,7 @@ fn relative(points: &[[f32; 3]], center: DVec3) -> impl Iterator<Item = Vec3> {
 }
 
 /// Keys of points that move, relative to `center`; `None` for those that do not.
-fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
+pub(super) fn moving(keys: Option<Keys<'_, Vec<[f32; 3]>>>, center: DVec3) -> Option<(Times, Vec<Vec<Vec3>>)> {
     let keys = keys?;
     let times = Times::new(keys.iter().map(|key| key.0).collect())?;
     Some((times, keys.iter().map(|(_, points)| relative(points, center).collect()).collect()))
@@ -231,4 +238,24 @@ fn place(
         catcher: desc.catcher,
         terminator: desc.terminator.unwrap_or(terminator).into(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_points_far_away_cost_the_others_no_digits() {
+        let near = |i: usize| [(i % 10) as f32 * 0.1 + 3.0, (i / 10) as f32 * 0.1, 0.25];
+        let mut points: Vec<[f32; 3]> = (0..100).map(near).collect();
+        let (middle, _) = centered(&points);
+        assert!((middle - DVec3::new(3.45, 0.45, 0.25)).length() < 1e-6, "{middle}");
+        points.push([1e7, 0.0, 0.0]);
+        let (center, relative) = centered(&points);
+        for (relative, point) in relative.zip(&points) {
+            let back = relative.as_dvec3() + center;
+            let exact = DVec3::from(point.map(f64::from));
+            assert!((back - exact).length() <= 1e-7 * exact.length(), "{back} instead of {exact}");
+        }
+    }
 }

@@ -40,6 +40,8 @@ pub struct CameraData {
     pub panorama: PanoramaData,
     /// Where it is at other times of the shutter: frames after the frame, and `matrix_world`.
     pub motion: Vec<(f64, [[f64; 4]; 4])>,
+    /// How it projects at the frames before and after where it zooms: frames after the frame, and the same fields.
+    pub zoom: Vec<(f64, Self)>,
 }
 
 impl Default for CameraData {
@@ -60,6 +62,7 @@ impl Default for CameraData {
             dof: None,
             panorama: PanoramaData::default(),
             motion: Vec::new(),
+            zoom: Vec::new(),
         }
     }
 }

@@ -24,6 +24,11 @@ pub struct RenderData {
     pub pass_alpha_threshold: f64,
     /// When the shutter opens and closes, frames after the frame; both 0 without motion blur.
     pub shutter: [f64; 2],
+    /// How far it is open at even steps of that time; empty for a flat curve.
+    pub shutter_curve: Vec<f64>,
+    /// Share of that time that each row of the picture is exposed, one after the other from the top; `None` for all at
+    /// once.
+    pub rolling_shutter: Option<f64>,
     /// The view layer's shader AOVs: name, and `COLOR` or `VALUE`.
     pub aovs: Vec<(String, String)>,
 }
@@ -39,6 +44,8 @@ impl Default for RenderData {
             transparent_glass: None,
             pass_alpha_threshold: 0.5,
             shutter: [0.0; 2],
+            shutter_curve: Vec::new(),
+            rolling_shutter: None,
             aovs: Vec::new(),
         }
     }

@@ -78,7 +78,7 @@ pub(super) fn read(
     let motion: Option<Vec<_>> =
         times.iter().map(|&time| read(time).map(|value| Motion { time: time - now, value })).collect();
     motion.unwrap_or_else(|| {
-        reading.warn(attribute.path(), "the number of points changes within the shutter; they stand still");
+        reading.warn(attribute.path(), "the number of points changes while they move; they stand still");
         Vec::new()
     })
 }
