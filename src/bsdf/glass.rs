@@ -96,7 +96,7 @@ impl Glass {
     /// Seen from `wo`. `multiscatter` gives back what scatters between microfacets.
     pub fn new(ggx: Option<Ggx>, boundary: Boundary, multiscatter: bool, wo: Vec3) -> Self {
         let passage = Passage::of(ggx, &boundary);
-        let (factor, albedo) = energy(ggx, &boundary, passage, multiscatter, wo.z.min(1.0));
+        let (factor, albedo) = energy(ggx, &boundary, passage, multiscatter, wo);
         Self { ggx, boundary, passage, factor, albedo }
     }
 
@@ -134,8 +134,34 @@ impl Glass {
     }
 }
 
+/// What a film changes in the light that single scattering keeps: of the difference in reflectance what is kept more
+/// by reflection than by passage. There are no tables for films, a few visible normals stand for all.
+fn film_keeps(film: &Film, bare: &Dielectric, ggx: Ggx, wo: Vec3) -> Rgb {
+    const SEEN: [[f32; 2]; 8] = [
+        [0.0625, 0.5],
+        [0.1875, 0.118],
+        [0.3125, 0.736],
+        [0.4375, 0.354],
+        [0.5625, 0.972],
+        [0.6875, 0.590],
+        [0.8125, 0.208],
+        [0.9375, 0.826],
+    ];
+    // G2/G1 of either way that light goes on.
+    let kept = |wi: Vec3| 2.0 * ggx.shadowing(wo, wi) * (wo.z + ggx.slant(wo));
+    let change = |u: [f32; 2]| {
+        let h = ggx.sample_visible(wo, u);
+        let cos = wo.dot(h).clamp(0.0, 1.0);
+        let up = Some(reflection::reflect(wo, h)).filter(|wi| wi.z > 0.0).map_or(0.0, kept);
+        let down = refract(wo, h, bare.eta).filter(|wi| wi.z < 0.0).map_or(0.0, kept);
+        (film.reflectance(cos) - bare.reflectance(cos)) * (up - down)
+    };
+    SEEN.into_iter().map(change).sum::<Rgb>() * (1.0 / SEEN.len() as f32)
+}
+
 /// The factor that makes up for lost light, and the albedos with it.
-fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter: bool, cos: f32) -> (Rgb, Sides) {
+fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter: bool, wo: Vec3) -> (Rgb, Sides) {
+    let cos = wo.z.min(1.0);
     let fresnel = &boundary.fresnel;
     let energy = ggx.map(|ggx| RoughnessPlace::of(ggx.mean()).at(cos));
     let plain = plain_at(energy, cos);
@@ -153,7 +179,10 @@ fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter:
         }
         _ => reflected.map(|r| (plain.reflected - r).max(0.0)),
     };
-    let sum = reflected + passed;
+    let mut sum = reflected + passed;
+    if let (Passage::RoughBent, Some(film), Some(ggx)) = (passage, &boundary.film, ggx) {
+        sum = (sum + film_keeps(film, fresnel, ggx, wo)).map(|kept| kept.clamp(LEAST_SHARE, 1.0));
+    }
     let [reflection, transmission] = boundary.tints;
     let factor = if multiscatter { sum.map(|sum| 1.0 / sum) } else { Rgb::WHITE };
     let albedo = if !boundary.reflects {

@@ -27,8 +27,8 @@ mod sky;
 pub use function::{Blend, Curves, Function, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
 pub use op::{
-    Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Scatter, Space, Voronoi, VoronoiFeature,
-    VoronoiOutput, Wave, WaveDirection, WaveProfile,
+    Brick, Bump, Gradient, Layer, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Scatter, Space, Voronoi,
+    VoronoiFeature, VoronoiOutput, Wave, WaveDirection, WaveProfile,
 };
 pub use sky::{Atmosphere, Scattering, Sky};
 

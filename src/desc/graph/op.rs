@@ -42,6 +42,26 @@ pub enum Op {
     },
     /// A normal bent by a height; world space.
     Bump(Bump),
+    /// What a white layer throws back of light that comes from everywhere, towards whoever looks; a number.
+    Albedo {
+        /// What it is.
+        layer: Layer,
+        /// A number, 0 to 1.
+        roughness: ValueId,
+        /// Index of refraction, a number; fibers have none.
+        ior: ValueId,
+        /// World space.
+        normal: ValueId,
+    },
+}
+
+/// A layer over a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Fibers, as in `SheenDesc`.
+    Sheen,
+    /// A dielectric's reflection, as in `CoatDesc`.
+    Coat,
 }
 
 /// A normal bent by the slope of a height, after Morten Mikkelsen: *Bump Mapping Unparametrized Surfaces on
@@ -295,6 +315,7 @@ impl Op {
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None; 4]),
             Self::Transform { value, .. } => (&[], [Some(*value), None, None, None]),
             Self::Bump(b) => (&[], [b.height, b.strength, b.distance, b.normal].map(Some)),
+            Self::Albedo { roughness, ior, normal, .. } => (&[], [Some(*roughness), Some(*ior), Some(*normal), None]),
         };
         list.iter().copied().chain(few.into_iter().flatten())
     }
@@ -308,6 +329,7 @@ impl Op {
             Self::Apply(_, args) | Self::Procedural(_, args) => (args, [None, None, None, None]),
             Self::Transform { value, .. } => (&mut [], [Some(value), None, None, None]),
             Self::Bump(b) => (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some)),
+            Self::Albedo { roughness, ior, normal, .. } => (&mut [], [Some(roughness), Some(ior), Some(normal), None]),
         };
         list.iter_mut().chain(few.into_iter().flatten())
     }

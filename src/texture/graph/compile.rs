@@ -121,6 +121,10 @@ impl<'a, R: Resolve> Compiler<'a, R> {
             }
             Op::Image { texture, uv } => self.image(*texture, *uv, at, depth),
             Op::Bump(bump) => self.bump(bump, depth),
+            Op::Albedo { layer, roughness, ior, normal } => {
+                let args = args(self, &[*roughness, *ior, *normal]);
+                self.steps.step(Action::Albedo(*layer), args)
+            }
         }
     }
 

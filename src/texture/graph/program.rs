@@ -3,7 +3,7 @@
 use super::hit::{Beside, Hit};
 use super::procedural;
 use super::sky::Sky;
-use crate::desc::graph::{Function, Leaf, Math, Procedural, Quantity, Space, Value, finite};
+use crate::desc::graph::{Function, Layer, Leaf, Math, Procedural, Quantity, Space, Value, finite};
 use crate::texture::{Texture, TextureRef};
 
 /// Where a step finds an argument: a constant, or the register of a step before.
@@ -50,6 +50,8 @@ pub(super) enum Action {
     Transform(Quantity, Space, Space),
     /// height here and at two points beside, strength, distance, normal.
     Bump { filter_width: f64, object_space: bool },
+    /// Albedo of a layer: roughness, index, normal.
+    Albedo(Layer),
 }
 
 /// A step: its action, and where it leaves the result.
@@ -149,6 +151,7 @@ impl Program {
                     let heights = [arg(0)[0], arg(1)[0], arg(2)[0]];
                     finite(bump(hit, heights, arg(3)[0], arg(4)[0], arg(5), *filter_width, *object_space))
                 }
+                Action::Albedo(layer) => finite([hit.albedo(*layer, arg(0)[0], arg(1)[0], arg(2)); 4]),
             };
             registers[step.out as usize] = value;
         }

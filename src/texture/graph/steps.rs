@@ -135,6 +135,7 @@ impl Steps {
         let (number, affine) = match &action {
             Action::Leaf(Leaf::Uv(set), _) => (false, Some(Affine::uv(*set))),
             Action::Leaf(leaf, _) => (is_number(leaf), None),
+            Action::Albedo(_) => (true, None),
             _ => (false, None),
         };
         self.push(Node { action, args, number, affine })
@@ -159,7 +160,7 @@ impl Steps {
                     asks.view |= sees(leaf);
                     asks.path |= matches!(leaf, Leaf::Path(_));
                 }
-                Action::Bump { .. } => asks.view = true,
+                Action::Bump { .. } | Action::Albedo(_) => asks.view = true,
                 _ => {}
             }
         }
