@@ -368,9 +368,31 @@ fn check_energy(case: &Case, bsdf: &Bsdf, degrees: f32) {
         _ if case.has_critical_angle() => 1e-2,
         _ => 5e-3,
     };
-    for c in total(furnace(bsdf, 1 << 14)).to_array() {
-        assert!(c <= 1.0 + tolerance, "{} {degrees}: {c}", case.name);
+    for c in total(furnace(bsdf, 1 << 15)).to_array() {
+        // The tables are made so that nothing is gained; what is left is the noise of the furnace.
+        assert!(c <= 1.003, "{} {degrees}: {c}", case.name);
         assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
+    }
+}
+
+/// There are no tables for films: on metal they gain nothing, on rough glass at most what the few microfacets that stand
+/// for all are off.
+#[test]
+fn films_gain_next_to_nothing() {
+    let films = [1.2, 2.4].into_iter().flat_map(|ior| [150.0, 300.0, 1000.0].map(|thickness| (ior, thickness)));
+    for (ior, thickness) in films {
+        for (roughness, degrees) in [0.25, 0.5, 1.0].into_iter().flat_map(|r| [0.0, 70.0, 88.0].map(|d| (r, d))) {
+            let film = Some(ThinFilm { thickness, ior, weight: 1.0 });
+            for (base, most) in [(METAL, 1.002), (GLASS, 1.03)] {
+                for entering in [true, false] {
+                    let surface = Surface { film, roughness, ..base };
+                    let bsdf = Bsdf::new(&surface, view(degrees, 0.0, true), entering);
+                    let seen = total(furnace(&bsdf, 1 << 14)).max_component();
+                    println!("{ior} {thickness} {roughness} {degrees} {entering}: {seen:.4}");
+                    assert!(seen < most, "{ior} {thickness} {roughness} {degrees} {entering}: {seen}");
+                }
+            }
+        }
     }
 }
 
@@ -414,7 +436,7 @@ fn white_coats_keep_all_light_and_no_more() {
                 let seen = total(furnace(&bsdf, 1 << 17)).g;
                 let case = format!("IOR {ior}, roughness {roughness}, specular {specular}, {degrees} degrees");
                 println!("{case}: {:+.5}", seen - 1.0);
-                assert!((seen - 1.0).abs() < 1.5e-3, "{case}: {seen}");
+                assert!(seen > 1.0 - 2.5e-3 && seen < 1.0 + 5e-4, "{case}: {seen}");
             }
         }
     }

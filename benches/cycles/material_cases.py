@@ -98,6 +98,14 @@ def _principled():
         yield Case(f"film {thickness:.0f} nm on a dielectric", Base_Color=BLACK, Roughness=0.0, Thin_Film_Thickness=thickness)
         yield Case(f"film {thickness:.0f} nm on metal", Base_Color=gray(0.7), Metallic=1.0, Roughness=0.2,
                    Thin_Film_Thickness=thickness, Thin_Film_IOR=1.6)
+    emits = {"Base_Color": BLACK, "Specular_IOR_Level": 0.0, "Emission_Strength": 0.5}
+    for roughness in (0.0, 0.5, 1.0):
+        yield Case(f"emission .5 below a coat, roughness {roughness}", **emits, Coat_Weight=1.0, Coat_Roughness=roughness)
+        yield Case(f"emission .5 below sheen, roughness {max(roughness, 0.2)}", **emits, Sheen_Weight=1.0,
+                   Sheen_Roughness=max(roughness, 0.2))
+    yield Case("emission .5 below a coat of tint .5", **emits, Coat_Weight=0.7, Coat_Tint=gray(0.5))
+    yield Case("emission .5 below both", **emits, Coat_Weight=0.7, Coat_Roughness=0.4, Sheen_Weight=0.6,
+               Sheen_Tint=(0.2, 0.5, 0.9, 1.0))
     yield Case("alpha .5", Base_Color=gray(0.5), Alpha=0.5)
     yield Case("all layers", Base_Color=(0.8, 0.4, 0.2, 1.0), Metallic=0.3, Roughness=0.4, Transmission_Weight=0.4,
                Coat_Weight=0.5, Sheen_Weight=0.4, Anisotropic=0.5, Specular_Tint=(1.0, 0.8, 0.6, 1.0))
@@ -118,22 +126,39 @@ def rows():
         cases = [Case(f"{name} {value:g}", **{**_SATIN, **others, name.replace(" ", "_"): value}) for value in values]
         return name, cases
 
-    coated = {"Coat_Weight": 1.0}
+    def tints(name, **others):
+        cases = [Case(f"{name} {value:g}", **{**_SATIN, **others, name.replace(" ", "_"): (1.0, value, value**2, 1.0)})
+                 for value in _STEPS]
+        return name, cases
+
+    def rename(name, named):
+        return name, named[1]
+
+    coated, glows = {"Coat_Weight": 1.0}, {"Emission_Color": (0.9, 0.6, 0.3, 1.0), "Emission_Strength": 0.5}
     return [
         row("Roughness", _STEPS),
         row("Metallic", _STEPS),
         row("IOR", (1.0, 1.2, 1.5, 2.0, 3.0)),
         row("Specular IOR Level", _STEPS),
+        tints("Specular Tint"),
         row("Diffuse Roughness", _STEPS),
+        row("Subsurface Weight", _STEPS, Subsurface_Scale=0.2),
+        row("Subsurface Scale", (0.01, 0.05, 0.2, 0.5, 1.0), Subsurface_Weight=1.0),
         row("Transmission Weight", _STEPS),
+        rename("Roughness of glass", row("Roughness", _STEPS, Transmission_Weight=1.0, Base_Color=gray(0.8))),
         row("Coat Weight", _STEPS),
         row("Coat Roughness", _STEPS, **coated),
         row("Coat IOR", (1.0, 1.25, 1.5, 2.0, 3.0), **coated),
+        tints("Coat Tint", **coated),
         row("Sheen Weight", _STEPS),
         row("Sheen Roughness", (0.1, 0.3, 0.5, 0.75, 1.0), Sheen_Weight=1.0),
+        tints("Sheen Tint", Sheen_Weight=1.0),
         row("Anisotropic", _STEPS, Metallic=1.0),
         row("Anisotropic Rotation", _STEPS, Metallic=1.0, Anisotropic=0.8),
         row("Thin Film Thickness", (0.0, 150.0, 300.0, 500.0, 900.0), Metallic=1.0, Base_Color=gray(0.7)),
+        row("Thin Film IOR", (1.0, 1.2, 1.5, 2.0, 2.5), Metallic=1.0, Base_Color=gray(0.7), Thin_Film_Thickness=400.0),
         row("Alpha", _STEPS),
         row("Emission Strength", (0.0, 0.1, 0.3, 0.6, 1.0)),
+        rename("Emission below a coat, by its weight", row("Coat Weight", _STEPS, **glows, Coat_Roughness=0.3)),
+        rename("Emission below sheen, by its weight", row("Sheen Weight", _STEPS, **glows)),
     ]

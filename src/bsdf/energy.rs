@@ -13,28 +13,28 @@
 //! and gives up reciprocity: Emmanuel Turquin, *Practical Multiple Scattering Compensation for
 //! Microfacet Models*, 2019, with the color of several bounces by Kulla and Conty 2017.
 //!
-//! The tables are `energy.bin`, 16 bits per value; the test `write_tables` makes them anew:
+//! The tables are `energy.bin`, 16 bits per value; the test `write_tables` of `tabulate.rs` makes them anew:
 //! `cargo test --release --ignore-rust-version --lib write_tables -- --ignored`.
 
 use crate::math::Rgb;
 
 /// Nodes in √cos θ, so that they are dense at grazing angles.
-const COS_NODES: usize = 32;
+pub(super) const COS_NODES: usize = 64;
 /// Nodes in roughness.
-const ROUGHNESS_NODES: usize = 32;
+pub(super) const ROUGHNESS_NODES: usize = 64;
 /// Nodes in ∜F0, each for an index and for its inverse.
-const ETA_NODES: usize = 20;
+pub(super) const ETA_NODES: usize = 20;
 /// ∜F0 of the last node, an index near 6, beyond which the shape of Fresnel's curve stays. The 10th
 /// node is at ∜0.04, the index 1.5 of nearly all surfaces.
-const LAST_ETA: f32 = 0.447_213_6 * 1.9;
+pub(super) const LAST_ETA: f32 = 0.447_213_6 * 1.9;
 
 /// First E and C by roughness and angle, then the averages of E by roughness, then S by side
 /// (indices above 1 first), index, roughness and angle, W and V in the same order, and D by roughness and
 /// angle, times [`EDGE_SCALE`].
-static TABLES: &[u8; 2 * VALUES] = include_bytes!("energy.bin");
+pub(super) static TABLES: &[u8; 2 * VALUES] = include_bytes!("energy.bin");
 
 /// D is small.
-const EDGE_SCALE: f32 = 16.0;
+pub(super) const EDGE_SCALE: f32 = 16.0;
 
 /// What rounding takes for 0 may be this large.
 pub(super) const LEAST: f32 = 1e-4;
@@ -191,62 +191,6 @@ mod tests {
     use super::super::quadrature::Seen;
     use super::*;
     use crate::math::sqr;
-
-    fn cos_node(i: usize) -> f32 {
-        sqr(i as f32 / (COS_NODES - 1) as f32)
-    }
-
-    fn alpha_node(j: usize) -> f32 {
-        sqr(j as f32 / (ROUGHNESS_NODES - 1) as f32)
-    }
-
-    fn eta_node(k: usize) -> f32 {
-        let root = sqr(LAST_ETA * k as f32 / (ETA_NODES - 1) as f32);
-        (1.0 + root) / (1.0 - root)
-    }
-
-    /// 2 ∫ E(μ) μ dμ for E linear in t = √μ between the nodes: 4 ∫ E t³ dt.
-    fn cosine_average(row: &[f32]) -> f32 {
-        let h = 1.0 / (COS_NODES - 1) as f32;
-        let mut sum = 0.0;
-        for (i, pair) in row.windows(2).enumerate() {
-            let (a, b) = (i as f32 * h, (i + 1) as f32 * h);
-            let slope = (pair[1] - pair[0]) / h;
-            sum += (pair[0] - slope * a) * (b.powi(4) - a.powi(4)) + 0.8 * slope * (b.powi(5) - a.powi(5));
-        }
-        sum
-    }
-
-    #[test]
-    #[ignore = "writes src/bsdf/energy.bin"]
-    fn write_tables() {
-        let (mut plain, mut averages, mut edges) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut blends, mut refracted) = (vec![0.0; 2 * ETA_NODES * SLICE], vec![0.0; 4 * ETA_NODES * SLICE]);
-        for j in 0..ROUGHNESS_NODES {
-            let mut row = Vec::new();
-            for i in 0..COS_NODES {
-                let seen = Seen::new(alpha_node(j), cos_node(i));
-                let Plain { reflected, reflected_schlick, reflected_edge } = seen.plain();
-                plain.extend([reflected, reflected_schlick]);
-                edges.push(reflected_edge * EDGE_SCALE);
-                row.push(reflected);
-                for k in 0..2 * ETA_NODES {
-                    let eta = if k < ETA_NODES { eta_node(k) } else { 1.0 / eta_node(k - ETA_NODES) };
-                    let r = seen.refractive(eta);
-                    let node = (k * ROUGHNESS_NODES + j) * COS_NODES + i;
-                    blends[node] = r.reflected_blend;
-                    refracted[2 * node] = r.refracted;
-                    refracted[2 * node + 1] = r.refracted_blend;
-                }
-            }
-            averages.push(cosine_average(&row));
-        }
-        let values = plain.into_iter().chain(averages).chain(blends).chain(refracted).chain(edges);
-        let bytes: Vec<u8> =
-            values.flat_map(|v| ((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_le_bytes()).collect();
-        assert_eq!(bytes.len(), TABLES.len());
-        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/src/bsdf/energy.bin"), bytes).unwrap();
-    }
 
     /// What glass without tints keeps of the light, by reflection and by refraction.
     fn glass(eta: f32, p: Plain, r: Refractive) -> f32 {

@@ -93,15 +93,10 @@ impl Boundary {
 }
 
 impl Glass {
-    /// Width of the microfacets: the root of the product of both.
-    pub fn width(&self) -> f32 {
-        self.ggx.map_or(0.0, |ggx| (ggx.x * ggx.y).sqrt())
-    }
-
     /// Seen from `wo`. `multiscatter` gives back what scatters between microfacets.
     pub fn new(ggx: Option<Ggx>, boundary: Boundary, multiscatter: bool, wo: Vec3) -> Self {
         let passage = Passage::of(ggx, &boundary);
-        let (factor, albedo) = energy(ggx, &boundary, passage, multiscatter, wo.z.min(1.0));
+        let (factor, albedo) = energy(ggx, &boundary, passage, multiscatter, wo);
         Self { ggx, boundary, passage, factor, albedo }
     }
 
@@ -144,8 +139,27 @@ impl Glass {
     }
 }
 
+/// What a film changes in the light that single scattering keeps: of the difference in reflectance what is kept more
+/// by reflection than by passage. There are no tables for films, a few visible normals stand for all.
+fn film_keeps(film: &Film, bare: &Dielectric, ggx: Ggx, wo: Vec3) -> Rgb {
+    const SEEN: usize = 16;
+    // G2/G1 of either way that light goes on.
+    let kept = |wi: Vec3| 2.0 * ggx.shadowing(wo, wi) * (wo.z + ggx.slant(wo));
+    let change = |i: usize| {
+        // A lattice of the golden ratio.
+        let u = [(i as f32 + 0.5) / SEEN as f32, (0.5 + i as f32 * 0.618_034).fract()];
+        let h = ggx.sample_visible(wo, u);
+        let cos = wo.dot(h).clamp(0.0, 1.0);
+        let up = Some(reflection::reflect(wo, h)).filter(|wi| wi.z > 0.0).map_or(0.0, kept);
+        let down = refract(wo, h, bare.eta).filter(|wi| wi.z < 0.0).map_or(0.0, kept);
+        (film.reflectance(cos) - bare.reflectance(cos)) * (up - down)
+    };
+    (0..SEEN).map(change).sum::<Rgb>() * (1.0 / SEEN as f32)
+}
+
 /// The factor that makes up for lost light, and the albedos with it.
-fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter: bool, cos: f32) -> (Rgb, Sides) {
+fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter: bool, wo: Vec3) -> (Rgb, Sides) {
+    let cos = wo.z.min(1.0);
     let fresnel = &boundary.fresnel;
     let energy = ggx.map(|ggx| RoughnessPlace::of(ggx.mean()).at(cos));
     let plain = plain_at(energy, cos);
@@ -163,7 +177,10 @@ fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter:
         }
         _ => reflected.map(|r| (plain.reflected - r).max(0.0)),
     };
-    let sum = reflected + passed;
+    let mut sum = reflected + passed;
+    if let (Passage::RoughBent, Some(film), Some(ggx)) = (passage, &boundary.film, ggx) {
+        sum = (sum + film_keeps(film, fresnel, ggx, wo)).map(|kept| kept.clamp(LEAST_SHARE, 1.0));
+    }
     let [reflection, transmission] = boundary.tints;
     let factor = if multiscatter { sum.map(|sum| 1.0 / sum) } else { Rgb::WHITE };
     let albedo = if !boundary.reflects {

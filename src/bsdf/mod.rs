@@ -28,6 +28,8 @@ mod sheen;
 mod softening;
 mod subsurface;
 mod surface;
+#[cfg(test)]
+mod tabulate;
 mod thin;
 mod thin_film;
 mod toon;
@@ -38,6 +40,7 @@ pub use conductor::Conductor;
 pub use fresnel::{f0_from_eta, fresnel_dielectric};
 pub use medium::Medium;
 pub use mixture::{Bsdf, Builder, Widening};
+pub use principled::{coat_albedo, sheen_albedo};
 pub use profile::Profile;
 pub use response::{BsdfEval, BsdfSample, ByLobe, Features, Lobe};
 pub use softening::Softening;

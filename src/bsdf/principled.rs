@@ -4,6 +4,7 @@
 
 use super::closure::{beneath, unit};
 use super::fresnel::{Dielectric, Metal, f0_from_eta};
+use super::ggx::Ggx;
 use super::glass::{Boundary, Glass};
 use super::lobe::Scatter;
 use super::mixture::{Builder, Class};
@@ -90,15 +91,12 @@ fn add_coat(builder: &mut Builder<'_>, weight: Rgb, coat: &Coat) -> Rgb {
     if share == 0.0 {
         return Rgb::WHITE;
     }
-    let ior = if coat.ior > 1.0 { coat.ior.min(LARGEST_IOR) } else { 1.0 };
+    let ior = coat_ior(coat.ior);
     let frame = builder.frame(coat.frame);
     let wo = builder.wo(frame);
     let mut below = 1.0;
     if ior > 1.0 {
-        let fresnel = Dielectric::new(ior, Rgb::splat(f0_from_eta(ior)), 1.0);
-        let ggx = builder.ggx([sqr(unit(coat.roughness)); 2]);
-        // Cycles' coats keep what scatters more than once, whatever the distribution.
-        let lobe = Reflection::new(ggx, Fresnel::Dielectric(fresnel), true, wo);
+        let lobe = coat_lobe(builder.ggx([sqr(unit(coat.roughness)); 2]), ior, wo);
         below = left(lobe.albedo().above * share);
         builder.push(weight * share, Class::Interface, frame, lobe);
     }
@@ -106,6 +104,37 @@ fn add_coat(builder: &mut Builder<'_>, weight: Rgb, coat: &Coat) -> Rgb {
     let within = 1.0 / safe_sqrt(1.0 - (1.0 - sqr(wo.z.min(1.0))) / sqr(ior)).max(1e-3);
     let tint = if coat.tint == Rgb::WHITE { Rgb::WHITE } else { coat.tint.map(|c| c.max(0.0).powf(within)) };
     Rgb::WHITE.lerp(tint, share) * below
+}
+
+fn coat_ior(ior: f32) -> f32 {
+    if ior > 1.0 { ior.min(LARGEST_IOR) } else { 1.0 }
+}
+
+fn coat_lobe(ggx: Option<Ggx>, ior: f32, wo: Vec3) -> Reflection {
+    let fresnel = Dielectric::new(ior, Rgb::splat(f0_from_eta(ior)), 1.0);
+    // Cycles' coats keep what scatters more than once, whatever the distribution.
+    Reflection::new(ggx, Fresnel::Dielectric(fresnel), true, wo)
+}
+
+/// Directional albedo of a whole coat of perceptual roughness and index of refraction, seen at `cos` to its
+/// normal; that of the layer in a [`Surface`].
+pub fn coat_albedo(roughness: f32, ior: f32, cos: f32) -> f32 {
+    let ior = coat_ior(ior);
+    if ior == 1.0 {
+        return 0.0;
+    }
+    coat_lobe(Ggx::new([sqr(unit(roughness)); 2]), ior, seen_at(cos)).albedo().above.max_component()
+}
+
+/// Directional albedo of white sheen of a roughness, seen at `cos` to its normal; that of the layer in a
+/// [`Surface`].
+pub fn sheen_albedo(roughness: f32, cos: f32) -> f32 {
+    SheenLobe::new(unit(roughness), seen_at(cos)).map_or(0.0, |lobe| lobe.albedo().above.max_component())
+}
+
+fn seen_at(cos: f32) -> Vec3 {
+    let cos = unit(cos);
+    Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos)
 }
 
 fn add_metal(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rgb) {

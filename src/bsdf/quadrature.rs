@@ -68,25 +68,25 @@ impl Seen {
     }
 
     pub fn plain(&self) -> Plain {
-        Plain {
-            reflected: self.reflecting.iter().map(|m| m.weight).sum(),
-            reflected_schlick: self.reflecting.iter().map(|m| m.weight * schlick(m.cos)).sum(),
-            reflected_edge: self.reflecting.iter().map(|m| m.weight * edge(m.cos)).sum(),
-        }
+        let sum = |share: fn(f32) -> f32| {
+            self.reflecting.iter().map(|m| f64::from(m.weight * share(m.cos))).sum::<f64>() as f32
+        };
+        Plain { reflected: sum(|_| 1.0), reflected_schlick: sum(schlick), reflected_edge: sum(edge) }
     }
 
     pub fn refractive(&self, eta: f32) -> Refractive {
         let dielectric = Dielectric::new(eta, Rgb::BLACK, 1.0);
-        let reflected_blend = self.reflecting.iter().map(|m| m.weight * dielectric.blend(m.cos)).sum();
-        let mut sum = Refractive { reflected_blend, ..Refractive::default() };
+        let blend = |m: &Microfacet| f64::from(m.weight * dielectric.blend(m.cos));
+        let reflected_blend = self.reflecting.iter().map(blend).sum::<f64>() as f32;
+        let (mut refracted, mut refracted_blend) = (0.0, 0.0);
         for m in &self.visible {
             if let Some(wi) = refract(self.wo, m.h, eta).filter(|wi| wi.z < 0.0) {
                 // G2/G1(wo).
                 let shadowing = 2.0 * self.ggx.shadowing(self.wo, wi) * (self.wo.z + self.ggx.slant(self.wo));
-                sum.refracted += m.weight * shadowing;
-                sum.refracted_blend += m.weight * shadowing * dielectric.blend(m.cos);
+                refracted += f64::from(m.weight * shadowing);
+                refracted_blend += f64::from(shadowing) * blend(m);
             }
         }
-        sum
+        Refractive { reflected_blend, refracted: refracted as f32, refracted_blend: refracted_blend as f32 }
     }
 }

@@ -102,6 +102,9 @@ mod tests {
                 lens: Some(LensDesc::round(0.1, 5.0)),
                 shutter: [-0.25, 0.5],
                 exposure: 1.0,
+                shutter_curve: Vec::new(),
+                rolling_shutter: None,
+                zoom: Vec::new(),
                 motion: Vec::new(),
             };
             off.apply(&mut camera);

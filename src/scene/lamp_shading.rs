@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::camera::Camera;
-use crate::desc::graph::{Function, Leaf, PathInfo, Quantity, Space, Value};
+use crate::desc::graph::{Function, Layer, Leaf, PathInfo, Quantity, Space, Value};
 use crate::math::{DAffine3, DVec2, DVec3, Rgb};
 use crate::texture::graph::{Beside, Hit, Program};
 use crate::texture::{Texture, TextureRef};
@@ -113,6 +113,11 @@ fn vector(v: DVec3) -> Value {
 }
 
 impl Hit for From<'_> {
+    // Nothing lies over a lamp.
+    fn albedo(&self, _: Layer, _: f64, _: f64, _: Value) -> f64 {
+        0.0
+    }
+
     fn leaf(&self, leaf: &Leaf, _: Beside) -> Value {
         let lamp = self.lamp;
         match leaf {

@@ -5,8 +5,9 @@ use smallvec::SmallVec;
 use super::asked::{OfMesh, OfObject};
 use super::interaction::Interaction;
 use super::{Asked, Instance};
+use crate::bsdf;
 use crate::camera::Camera;
-use crate::desc::graph::{Leaf, Quantity, Space, Value};
+use crate::desc::graph::{Layer, Leaf, Quantity, Space, Value};
 use crate::math::{DMat3, DVec3};
 use crate::shape::{Attribute, Mesh, Placement, Shape};
 use crate::texture::graph::{Beside, HERE, Hit, Program};
@@ -342,6 +343,15 @@ impl Hit for Spot<'_> {
         let world = self.world_from(quantity, from, DVec3::new(x, y, z));
         let there = self.world_to(quantity, to, world);
         [there.x, there.y, there.z, w]
+    }
+
+    fn albedo(&self, layer: Layer, roughness: f64, ior: f64, normal: Value) -> f64 {
+        let n = DVec3::new(normal[0], normal[1], normal[2]);
+        let cos = self.it.wo.as_dvec3().dot(n) as f32;
+        f64::from(match layer {
+            Layer::Sheen => bsdf::sheen_albedo(roughness as f32, cos),
+            Layer::Coat => bsdf::coat_albedo(roughness as f32, ior as f32, cos),
+        })
     }
 
     fn footprint(&self) -> [Value; 2] {

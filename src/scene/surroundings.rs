@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::camera::Camera;
-use crate::desc::graph::{Leaf, Quantity, Space, Value};
+use crate::desc::graph::{Layer, Leaf, Quantity, Space, Value};
 use crate::math::{DVec3, Rgb, Vec3};
 use crate::texture::graph::{Beside, Hit, Program};
 use crate::texture::{Texture, TextureRef};
@@ -53,6 +53,11 @@ fn vector(v: DVec3) -> Value {
 }
 
 impl Hit for Towards<'_> {
+    // Nothing lies over a world.
+    fn albedo(&self, _: Layer, _: f64, _: f64, _: Value) -> f64 {
+        0.0
+    }
+
     fn leaf(&self, leaf: &Leaf, _: Beside) -> Value {
         match leaf {
             Leaf::Position | Leaf::ObjectPosition | Leaf::Generated => vector(self.direction),

@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use base64::Engine;
+use penumbra::desc::graph::{Layer, Op};
 use penumbra::desc::{
     AlphaMode, Attribute, Channel, ColorSpace, Filter, MaterialDesc, NormalInput, PixelData, SceneDesc, Wrap,
 };
@@ -112,6 +113,30 @@ fn every_material_extension() {
     }
     assert_eq!(space(anisotropy.texture.unwrap().texture), ColorSpace::Linear);
     assert!(scene.meshes[0].tangents.is_some(), "anisotropy needs tangents");
+}
+
+/// Sheen and clearcoat dim it; without emission there is nothing to dim.
+#[test]
+fn emission_is_below_the_layers() {
+    let t = json!({"index": 0});
+    let layers = |emissive: [f64; 3]| {
+        load(&with_material(json!({"emissiveFactor": emissive, "extensions": {
+            "KHR_materials_clearcoat": {"clearcoatFactor": 0.7, "clearcoatTexture": t, "clearcoatRoughnessFactor": 0.2, "clearcoatNormalTexture": {"index": 0, "scale": 2}},
+            "KHR_materials_sheen": {"sheenColorFactor": [0.3, 0.2, 0.1], "sheenRoughnessFactor": 0.4},
+        }})))
+    };
+    let glowing = layers([0.5, 1.0, 2.0]);
+    let m = material(&glowing);
+    assert_eq!(m.emission.factor, [0.5, 1.0, 2.0]);
+    let below = m.emission.graph.unwrap();
+    let found: Vec<Layer> = (0..=below.index())
+        .filter_map(|i| match m.graph.ops()[i] {
+            Op::Albedo { layer, .. } => Some(layer),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(found, [Layer::Coat, Layer::Sheen]);
+    assert_eq!(material(&layers([0.0; 3])).emission.graph, None);
 }
 
 #[test]

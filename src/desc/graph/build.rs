@@ -1,6 +1,6 @@
 //! What doors build again and again.
 
-use super::{Blend, Function, Graph, Leaf, Math, Op, Quantity, Space, Value, ValueId};
+use super::{Blend, Function, Graph, Layer, Leaf, Math, Op, Quantity, Space, Value, ValueId};
 
 /// Relative luminance of linear Rec.709 (ITU-R BT.709), as Cycles turns a color into a number.
 const LUMINANCE: Value = [0.2126729, 0.7151522, 0.0721750, 0.0];
@@ -138,6 +138,50 @@ impl Graph {
     pub fn layer_facing(&mut self, blend: ValueId, normal: ValueId) -> ValueId {
         let incoming = self.leaf(Leaf::Incoming);
         self.apply(Function::LayerFacing, &[blend, normal, incoming])
+    }
+
+    /// What a layer of fibers of this color leaves of what is below it.
+    pub fn below_sheen(&mut self, color: ValueId, roughness: ValueId, normal: ValueId) -> ValueId {
+        let ior = self.number(1.0);
+        let albedo = self.push(Op::Albedo { layer: Layer::Sheen, roughness, ior, normal });
+        // No channel gets more than the one of which most is thrown back.
+        let [r, g, b] = [0, 1, 2].map(|place| self.place(color, place));
+        let most = self.math(Math::Maximum, &[r, g]);
+        let most = self.math(Math::Maximum, &[most, b]);
+        let gone = self.multiply(most, albedo);
+        self.rest(gone)
+    }
+
+    /// What a coat leaves of what is below it: by its reflection, and by its tint, of which `tint^(1/cos)` is left
+    /// for the cosine within, cos² = 1 − (1 − (n·wo)²) / ior².
+    pub fn below_coat(&mut self, weight: ValueId, tint: ValueId, layer: [ValueId; 3]) -> ValueId {
+        let [roughness, ior, normal] = layer;
+        let albedo = self.push(Op::Albedo { layer: Layer::Coat, roughness, ior, normal });
+        let gone = self.multiply(albedo, weight);
+        let passed = self.rest(gone);
+        let one = self.number(1.0);
+        if self.known(tint).is_some_and(|tint| tint[..3] == [1.0; 3]) {
+            return passed;
+        }
+        let incoming = self.leaf(Leaf::Incoming);
+        let cos = self.apply(Function::Dot(3), &[incoming, normal]);
+        let sine = self.multiply(cos, cos);
+        let sine = self.subtract(one, sine);
+        let squared = self.multiply(ior, ior);
+        let within = self.math(Math::Divide, &[sine, squared]);
+        let within = self.subtract(one, within);
+        let within = self.math(Math::Sqrt, &[within]);
+        let depth = self.math(Math::Divide, &[one, within]);
+        let tint = self.math(Math::Power, &[tint, depth]);
+        let tint = self.mix(one, tint, weight);
+        self.multiply(passed, tint)
+    }
+
+    /// `1 − share`, from 0 on.
+    fn rest(&mut self, share: ValueId) -> ValueId {
+        let (zero, one) = (self.number(0.0), self.number(1.0));
+        let rest = self.subtract(one, share);
+        self.math(Math::Maximum, &[rest, zero])
     }
 
     /// A vector carried from space to space.

@@ -27,7 +27,7 @@ mod sky;
 pub use function::{Blend, Curves, Function, IesTable, Mapping, Math, Ramp, RampKind, Range, Table};
 pub use leaf::{Leaf, PathInfo};
 pub use op::{
-    Brick, Bump, Gradient, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Relief, Scatter, Space, Voronoi,
+    Brick, Bump, Gradient, Layer, Metric, Noise, NoiseKind, Op, Procedural, Quantity, Relief, Scatter, Space, Voronoi,
     VoronoiFeature, VoronoiOutput, Wave, WaveDirection, WaveProfile,
 };
 pub use sky::{Atmosphere, Scattering, Sky};

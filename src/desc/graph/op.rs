@@ -44,6 +44,17 @@ pub enum Op {
     Bump(Bump),
     /// The slope of a height over texture coordinates, as a normal map has it.
     Relief(Relief),
+    /// What a white layer throws back of light that comes from everywhere, towards whoever looks; a number.
+    Albedo {
+        /// What it is.
+        layer: Layer,
+        /// A number, 0 to 1.
+        roughness: ValueId,
+        /// Index of refraction, a number; fibers have none.
+        ior: ValueId,
+        /// World space.
+        normal: ValueId,
+    },
 }
 
 /// The slope of a height over texture coordinates: the unit normal of the relief in tangent space, 0 to 1 as a normal
@@ -57,6 +68,15 @@ pub struct Relief {
     pub scale: ValueId,
     /// Coordinates in the first two places, in the directions of tangent and bitangent.
     pub uv: ValueId,
+}
+
+/// A layer over a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Fibers, as in `SheenDesc`.
+    Sheen,
+    /// A dielectric's reflection, as in `CoatDesc`.
+    Coat,
 }
 
 /// A normal bent by the slope of a height, after Morten Mikkelsen: *Bump Mapping Unparametrized Surfaces on
@@ -325,6 +345,7 @@ impl Op {
             Self::Transform { value, .. } => (&[], [Some(*value), None, None, None]),
             Self::Bump(b) => (&[], [b.height, b.strength, b.distance, b.normal].map(Some)),
             Self::Relief(r) => (&[], [Some(r.height), Some(r.scale), Some(r.uv), None]),
+            Self::Albedo { roughness, ior, normal, .. } => (&[], [Some(*roughness), Some(*ior), Some(*normal), None]),
         };
         list.iter().copied().chain(few.into_iter().flatten())
     }
@@ -339,6 +360,7 @@ impl Op {
             Self::Transform { value, .. } => (&mut [], [Some(value), None, None, None]),
             Self::Bump(b) => (&mut [], [&mut b.height, &mut b.strength, &mut b.distance, &mut b.normal].map(Some)),
             Self::Relief(r) => (&mut [], [Some(&mut r.height), Some(&mut r.scale), Some(&mut r.uv), None]),
+            Self::Albedo { roughness, ior, normal, .. } => (&mut [], [Some(roughness), Some(ior), Some(normal), None]),
         };
         list.iter_mut().chain(few.into_iter().flatten())
     }

@@ -1,5 +1,6 @@
 //! Materials: metallic-roughness and its KHR extensions, field by field.
 
+use super::covered::cover;
 use super::document::label;
 use super::json::{Material, MetallicRoughness, SpecularGlossiness, TextureInfo};
 use super::texture::Lookup;
@@ -73,6 +74,7 @@ impl Converter<'_, '_> {
         if let Some(old) = &x.specular_glossiness {
             self.specular_glossiness(old, &mut material);
         }
+        cover(&mut material);
         material
     }
 

@@ -14,6 +14,7 @@ mod buffer;
 mod camera;
 mod clean;
 mod container;
+mod covered;
 mod deform;
 mod document;
 mod draco;

@@ -122,6 +122,10 @@ impl<'a, R: Resolve> Compiler<'a, R> {
             Op::Image { texture, uv } => self.image(*texture, *uv, at, depth),
             Op::Bump(bump) => self.bump(bump, depth),
             Op::Relief(relief) => self.relief(relief, depth),
+            Op::Albedo { layer, roughness, ior, normal } => {
+                let args = args(self, &[*roughness, *ior, *normal]);
+                self.steps.step(Action::Albedo(*layer), args)
+            }
         }
     }
 

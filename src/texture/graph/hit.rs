@@ -1,6 +1,6 @@
 //! What a program asks of the place where a ray met a surface.
 
-use crate::desc::graph::{Leaf, Quantity, Space, Value};
+use crate::desc::graph::{Layer, Leaf, Quantity, Space, Value};
 use crate::texture::TextureRef;
 
 /// A point beside the hit: so many widths of the ray's footprint along two directions of the surface that are
@@ -24,6 +24,10 @@ pub trait Hit {
 
     /// A point, vector or normal taken from one space to another.
     fn transform(&self, quantity: Quantity, from: Space, to: Space, value: Value) -> Value;
+
+    /// What a layer throws back towards whoever looks, of white light that comes from everywhere; see
+    /// [`crate::desc::graph::Op::Albedo`]. `normal` is in world space.
+    fn albedo(&self, layer: Layer, roughness: f64, ior: f64, normal: Value) -> f64;
 
     /// The two directions of [`Beside`], as long as the footprint is wide, world space.
     fn footprint(&self) -> [Value; 2];

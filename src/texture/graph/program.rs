@@ -3,7 +3,7 @@
 use super::hit::{Beside, Hit};
 use super::procedural;
 use super::sky::Sky;
-use crate::desc::graph::{Function, Leaf, Math, Procedural, Quantity, Space, Value, finite};
+use crate::desc::graph::{Function, Layer, Leaf, Math, Procedural, Quantity, Space, Value, finite};
 use crate::texture::{Texture, TextureRef};
 
 /// Where a step finds an argument: a constant, or the register of a step before.
@@ -52,6 +52,8 @@ pub(super) enum Action {
     Bump { filter_width: f64, object_space: bool },
     /// height here and at two points beside, coordinates at the three, factor of the height.
     Relief,
+    /// Albedo of a layer: roughness, index, normal.
+    Albedo(Layer),
 }
 
 /// A step: its action, and where it leaves the result.
@@ -155,6 +157,7 @@ impl Program {
                     let factor = arg(6)[0] * SOBEL;
                     finite(relief([0, 1, 2].map(|i| factor * arg(i)[0]), [arg(3), arg(4), arg(5)]))
                 }
+                Action::Albedo(layer) => finite([hit.albedo(*layer, arg(0)[0], arg(1)[0], arg(2)); 4]),
             };
             registers[step.out as usize] = value;
         }

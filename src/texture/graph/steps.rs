@@ -136,6 +136,7 @@ impl Steps {
         let (number, affine) = match &action {
             Action::Leaf(Leaf::Uv(set), _) => (false, Some(Affine::uv(*set))),
             Action::Leaf(leaf, _) => (is_number(leaf), None),
+            Action::Albedo(_) => (true, None),
             _ => (false, None),
         };
         self.push(Node { action, args, number, affine })
@@ -160,7 +161,7 @@ impl Steps {
                     asks.view |= sees(leaf);
                     asks.path |= matches!(leaf, Leaf::Path(_));
                 }
-                Action::Bump { .. } | Action::Relief => asks.view = true,
+                Action::Bump { .. } | Action::Relief | Action::Albedo(_) => asks.view = true,
                 _ => {}
             }
         }

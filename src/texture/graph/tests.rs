@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::desc::graph::{
-    Blend, Bump, Function, Graph, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value, ValueId,
-    finite,
+    Blend, Bump, Function, Graph, Layer, Leaf, Mapping, Math, Op, PathInfo, Quantity, Range, Relief, Space, Value,
+    ValueId, finite,
 };
 use crate::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, TextureTransform, Wrap};
 use crate::error::{Place, Warnings};
@@ -68,6 +68,11 @@ impl Hit for Plain {
             Quantity::Vector => [x, stretch * y, z, w],
             Quantity::Normal => Function::Normalize(3).eval(&[[x, y / stretch, z, 0.0]]),
         }
+    }
+
+    fn albedo(&self, layer: Layer, roughness: f64, ior: f64, normal: Value) -> f64 {
+        let share = 0.25 * (roughness + normal[2]);
+        if layer == Layer::Sheen { share } else { share * ior }
     }
 
     fn footprint(&self) -> [Value; 2] {
@@ -133,6 +138,9 @@ fn naive(graph: &Graph, id: ValueId, hit: &Plain, at: Beside) -> Value {
             procedural::eval(texture, &args.iter().map(|id| value(*id)).collect::<Vec<_>>())
         }
         Op::Sky { .. } | Op::Relief(_) => panic!("random graphs have none"),
+        Op::Albedo { layer, roughness, ior, normal } => {
+            [hit.albedo(*layer, value(*roughness)[0], value(*ior)[0], value(*normal)); 4]
+        }
         Op::Transform { quantity, from, to, value: id } => finite(hit.transform(*quantity, *from, *to, value(*id))),
         Op::Image { texture: 2, .. } => [0.5, 0.5, 0.5, 1.0],
         Op::Image { texture, uv } => {
@@ -190,7 +198,7 @@ const MATHS: [Math; 14] = [
 /// An operation by numbers that say which one and of what.
 fn random_op(kind: u8, pick: u8, x: f64, args: [ValueId; 3], graph: &mut Graph) -> ValueId {
     let [a, b, c] = args;
-    match kind % 16 {
+    match kind % 17 {
         0 => graph.number(x),
         1 => graph.constant([x, 1.0, -x, 0.0]),
         2 => graph.number([0.0, 1.0][usize::from(pick % 2)]),
@@ -244,7 +252,11 @@ fn random_op(kind: u8, pick: u8, x: f64, args: [ValueId; 3], graph: &mut Graph) 
             };
             graph.push(Op::Bump(bump))
         }
-        14 => graph.transform(Quantity::Point, Space::World, Space::Object, a),
+        14 => {
+            let layer = if pick.is_multiple_of(2) { Layer::Sheen } else { Layer::Coat };
+            graph.push(Op::Albedo { layer, roughness: a, ior: b, normal: c })
+        }
+        15 => graph.transform(Quantity::Point, Space::World, Space::Object, a),
         _ => graph.apply(Function::Length(3), &[a]),
     }
 }

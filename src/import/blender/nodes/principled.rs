@@ -2,7 +2,7 @@
 
 use super::flow::{At, Flow};
 use super::surface::{alpha_mode, anisotropy, color, film, input, normal, number, optional, scalar, solid, subsurface};
-use crate::desc::graph::{Function, Leaf, Math, ValueId};
+use crate::desc::graph::{Function, ValueId};
 use crate::desc::{AnisotropyLaw, CoatDesc, ColorInput, MaterialDesc, SheenDesc, SubsurfaceDesc};
 
 /// `base` as the surface of the node alone.
@@ -53,41 +53,31 @@ pub fn principled<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> (MaterialDesc, Val
     (layers, alpha, covered(flow, at, emission))
 }
 
-/// What is left of `emission` above the coat, taken for smooth.
-fn covered<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, emission: ValueId) -> ValueId {
+/// What is left of `emission` above sheen and coat.
+fn covered<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, mut emission: ValueId) -> ValueId {
     let zero = |flow: &Flow<'_, '_>, value: ValueId| flow.graph.known(value).is_some_and(|v| v[..3] == [0.0; 3]);
-    let weight = flow.input(at, "Coat Weight");
     if zero(flow, emission) {
         return emission;
     }
-    let sheen = flow.input(at, "Sheen Weight");
+    let own = flow.linked_or(at, "Normal", |flow| flow.normal());
+    let (coat, mut top) = (flow.input(at, "Coat Weight"), own);
+    if !zero(flow, coat) {
+        let normal = flow.linked_or(at, "Coat Normal", |flow| flow.normal());
+        top = flow.graph.mix(own, normal, coat);
+        top = flow.graph.apply(Function::Normalize(3), &[top]);
+        let (tint, roughness) = (flow.input(at, "Coat Tint"), flow.input(at, "Coat Roughness"));
+        let ior = flow.input_or(at, "Coat IOR", 1.5);
+        let below = flow.graph.below_coat(coat, tint, [roughness, ior, normal]);
+        emission = flow.graph.multiply(emission, below);
+    }
+    let (sheen, tint) = (flow.input(at, "Sheen Weight"), flow.input(at, "Sheen Tint"));
     if !zero(flow, sheen) {
-        flow.warn("the sheen of a Principled BSDF does not dim its emission");
+        let (color, roughness) = (flow.graph.multiply(sheen, tint), flow.input(at, "Sheen Roughness"));
+        // Fibers stand on whatever is on top.
+        let below = flow.graph.below_sheen(color, roughness, top);
+        emission = flow.graph.multiply(emission, below);
     }
-    if zero(flow, weight) {
-        return emission;
-    }
-    let ior = flow.input_or(at, "Coat IOR", 1.5);
-    let normal = flow.linked_or(at, "Coat Normal", |flow| flow.normal());
-    let one = flow.graph.number(1.0);
-    let reflected = flow.graph.fresnel(ior, normal);
-    let reflected = flow.graph.multiply(reflected, weight);
-    let passed = flow.graph.subtract(one, reflected);
-    // tint^(1/cos) for the cosine within the coat, cos² = 1 − (1 − (n·wo)²) / ior².
-    let incoming = flow.graph.leaf(Leaf::Incoming);
-    let cos = flow.graph.apply(Function::Dot(3), &[incoming, normal]);
-    let sine = flow.graph.multiply(cos, cos);
-    let sine = flow.graph.subtract(one, sine);
-    let squared = flow.graph.multiply(ior, ior);
-    let within = flow.graph.math(Math::Divide, &[sine, squared]);
-    let within = flow.graph.subtract(one, within);
-    let within = flow.graph.math(Math::Sqrt, &[within]);
-    let depth = flow.graph.math(Math::Divide, &[one, within]);
-    let tint = flow.input(at, "Coat Tint");
-    let tint = flow.graph.math(Math::Power, &[tint, depth]);
-    let tint = flow.graph.mix(one, tint, weight);
-    let emission = flow.graph.multiply(emission, passed);
-    flow.graph.multiply(emission, tint)
+    emission
 }
 
 fn beneath<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<SubsurfaceDesc> {
