@@ -38,6 +38,10 @@ def _lobes():
                        Roughness=roughness, IOR=1.5)
     for ior in (0.7, 1.0, 1.1, 2.4):
         yield Case(f"Glass 1, IOR {ior}, roughness .3", "ShaderNodeBsdfGlass", MULTI, Color=WHITE, Roughness=0.3, IOR=ior)
+    for ior in (1.5, 1.0 / 1.5):
+        for roughness in (0.25, 0.5, 1.0):
+            yield Case(f"Glass .25, IOR {ior:.2f}, roughness {roughness}", "ShaderNodeBsdfGlass", MULTI, Color=gray(0.25),
+                       Roughness=roughness, IOR=ior)
     for thickness in (150.0, 400.0, 900.0):
         yield Case(f"Glass 1, roughness 0, film {thickness:.0f} nm", "ShaderNodeBsdfGlass", MULTI, Color=WHITE,
                    Roughness=0.0, IOR=1.5, Thin_Film_Thickness=thickness, Thin_Film_IOR=1.8)
@@ -71,6 +75,14 @@ def _principled():
         for roughness in (0.0, 0.25, 0.5, 1.0):
             yield Case(f"transmission {transmission}, roughness {roughness}", Base_Color=WHITE,
                        Transmission_Weight=transmission, Roughness=roughness)
+    for roughness in (0.25, 0.5, 1.0):
+        yield Case(f"one bounce, base .8, roughness {roughness}", PRINCIPLED, SINGLE, Base_Color=gray(0.8),
+                   Roughness=roughness)
+        yield Case(f"transmission 1, base .25, roughness {roughness}", Base_Color=gray(0.25), Transmission_Weight=1.0,
+                   Roughness=roughness)
+        yield Case(f"film 300 nm, base .8, roughness {roughness}", Base_Color=gray(0.8), Roughness=roughness,
+                   Thin_Film_Thickness=300.0)
+    yield Case("IOR 0.7, base .5, roughness .5", Base_Color=gray(0.5), Roughness=0.5, IOR=0.7)
     yield Case("transmission 1, base .25", Base_Color=gray(0.25), Transmission_Weight=1.0, Roughness=0.0)
     for ior in (1.0, 1.1, 1.33, 2.0, 3.0):
         yield Case(f"IOR {ior}, black, roughness 0", Base_Color=BLACK, Roughness=0.0, IOR=ior)
@@ -143,6 +155,8 @@ def rows():
         tints("Specular Tint"),
         row("Diffuse Roughness", _STEPS),
         row("Subsurface Weight", _STEPS, Subsurface_Scale=0.2),
+        row("Subsurface Anisotropy", (0.0, 0.2, 0.4, 0.6, 0.8), Subsurface_Weight=1.0, Subsurface_Scale=0.2),
+        row("Subsurface IOR", (1.01, 1.2, 1.4, 1.8, 2.5), Subsurface_Weight=1.0, Subsurface_Scale=0.2),
         row("Subsurface Scale", (0.01, 0.05, 0.2, 0.5, 1.0), Subsurface_Weight=1.0),
         row("Transmission Weight", _STEPS),
         rename("Roughness of glass", row("Roughness", _STEPS, Transmission_Weight=1.0, Base_Color=gray(0.8))),
@@ -156,6 +170,7 @@ def rows():
         row("Anisotropic", _STEPS, Metallic=1.0),
         row("Anisotropic Rotation", _STEPS, Metallic=1.0, Anisotropic=0.8),
         row("Thin Film Thickness", (0.0, 150.0, 300.0, 500.0, 900.0), Metallic=1.0, Base_Color=gray(0.7)),
+        rename("Roughness below a film", row("Roughness", _STEPS, Thin_Film_Thickness=400.0)),
         row("Thin Film IOR", (1.0, 1.2, 1.5, 2.0, 2.5), Metallic=1.0, Base_Color=gray(0.7), Thin_Film_Thickness=400.0),
         row("Alpha", _STEPS),
         row("Emission Strength", (0.0, 0.1, 0.3, 0.6, 1.0)),

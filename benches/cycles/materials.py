@@ -205,12 +205,14 @@ def page(furnaces, grid, size, samples, seconds, threads):
 
 
 KNOWN = [
-    "- At 85°, what lies beneath a dielectric or a coat: Cycles takes up to 2 % too much off it there. White plastic and "
+    "- At 85°, what lies beneath a dielectric or a coat: Cycles takes up to 4 % too much off it there. White plastic and "
     "white lacquer keep all light, so that 1 is exact.",
-    "- Glass seen from its denser side: Cycles loses up to 4 % at grazing angles, Penumbra nothing (IOR 0.7). A ball of "
-    "rough glass is therefore darker in Cycles the more often light bounces within. White ones of Transmission Weight 1 "
-    "in a white furnace should show their disc, 0.664 of a tile; at roughness 0.6 and 1 Cycles shows 0.646 and 0.648, "
-    "Penumbra 0.658 and 0.664.",
+    "- Glass seen from its denser side: Cycles loses up to 4 % at grazing angles, Penumbra nothing (white, IOR 0.7). A "
+    "ball of rough glass is therefore darker in Cycles the more often light bounces within.",
+    "- An opaque surface of an index below 1: Cycles reflects all beyond the critical angle and adds the light from below, "
+    "more than there is; Penumbra takes the reciprocal index.",
+    "- Stretched microfacets along their wider direction: Cycles gives back up to 3 % more than they lose, Penumbra what "
+    "they lose.",
 ]
 """What the page says of what is in bold."""
 

@@ -198,9 +198,9 @@ impl Builder<'_> {
                 let fresnel = beneath(film, Base::Conductor(*index)).map_or(Fresnel::Conductor(*index), Fresnel::Film);
                 self.add_reflection(weight, fresnel, facets);
             }
-            Closure::Glass { color, ior, facets, film } => self.add_boundary(weight * *color, *ior, facets, film, true),
+            Closure::Glass { color, ior, facets, film } => self.add_boundary(weight, *color, *ior, facets, film, true),
             Closure::Refraction { color, ior, facets } => {
-                self.add_boundary(weight * *color, *ior, facets, &None, false);
+                self.add_boundary(weight, *color, *ior, facets, &None, false);
             }
             Closure::Sheen(sheen) => {
                 if let Some(lobe) = SheenLobe::new(unit(sheen.roughness), self.wo(None)) {
@@ -243,7 +243,15 @@ impl Builder<'_> {
         self.push(color, Class::Interface, frame, lobe);
     }
 
-    fn add_boundary(&mut self, color: Rgb, ior: f32, facets: &Microfacets, film: &Option<ThinFilm>, reflects: bool) {
+    fn add_boundary(
+        &mut self,
+        weight: Rgb,
+        color: Rgb,
+        ior: f32,
+        facets: &Microfacets,
+        film: &Option<ThinFilm>,
+        reflects: bool,
+    ) {
         let ior = if ior > 0.0 && ior.is_finite() { ior.clamp(1e-3, 1e3) } else { 1.0 };
         let eta = if self.entering() { ior } else { 1.0 / ior };
         let fresnel = Dielectric::new(eta, Rgb::splat(f0_from_eta(ior)), 1.0);
@@ -252,12 +260,12 @@ impl Builder<'_> {
             fresnel,
             film: beneath(&film, Base::Dielectric(fresnel)),
             reflects,
-            tints: [Rgb::WHITE; 2],
+            tints: [color.map(|c| c.max(0.0)); 2],
             thin: false,
         };
         let ggx = self.ggx([sqr(unit(facets.roughness)); 2]);
         self.push(
-            color,
+            weight,
             Class::Interface,
             None,
             Glass::new(ggx, boundary, facets.multiscatter && reflects, self.wo(None)),

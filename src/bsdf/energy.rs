@@ -29,8 +29,8 @@ pub(super) const ETA_NODES: usize = 20;
 pub(super) const LAST_ETA: f32 = 0.447_213_6 * 1.9;
 
 /// First E and C by roughness and angle, then the averages of E by roughness, then S by side
-/// (indices above 1 first), index, roughness and angle, W and V in the same order, and D by roughness and
-/// angle, times [`EDGE_SCALE`].
+/// (indices above 1 first), index, roughness and angle, W and V in the same order, D by roughness and
+/// angle, times [`EDGE_SCALE`], and the averages of what untinted glass keeps by side, index and roughness.
 pub(super) static TABLES: &[u8; 2 * VALUES] = include_bytes!("energy.bin");
 
 /// D is small.
@@ -44,7 +44,8 @@ const AVERAGES: usize = 2 * SLICE;
 const BLENDS: usize = AVERAGES + ROUGHNESS_NODES;
 const REFRACTED: usize = BLENDS + 2 * ETA_NODES * SLICE;
 const EDGES: usize = REFRACTED + 2 * 2 * ETA_NODES * SLICE;
-const VALUES: usize = EDGES + SLICE;
+const GLASS_AVERAGES: usize = EDGES + SLICE;
+const VALUES: usize = GLASS_AVERAGES + 2 * ETA_NODES * ROUGHNESS_NODES;
 
 /// Averages that don't depend on the index of refraction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -103,6 +104,15 @@ impl RoughnessPlace {
     pub fn reflected_average(self) -> f32 {
         let first = AVERAGES + self.0.node;
         self.0.mix([value(first)], [value(first + 1)])[0]
+    }
+
+    /// The same for what untinted glass keeps of reflection and passage.
+    pub fn glass_average(self, eta: EtaPlace) -> f32 {
+        let row = |k: usize| {
+            let first = GLASS_AVERAGES + (eta.side * ETA_NODES + k) * ROUGHNESS_NODES + self.0.node;
+            self.0.mix([value(first)], [value(first + 1)])
+        };
+        eta.place.mix(row(eta.place.node), row(eta.place.node + 1))[0]
     }
 
     /// With `cos` of the angle to the camera.

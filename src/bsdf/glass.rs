@@ -1,6 +1,6 @@
 //! A boundary between transparent media, or a sheet: light is reflected or passes.
 
-use super::energy::{EtaPlace, LEAST, Refractive, RoughnessPlace};
+use super::energy::{EtaPlace, LEAST, Refractive, RoughnessPlace, several_bounces};
 use super::fresnel::{Dielectric, refract};
 use super::ggx::Ggx;
 use super::lobe::{Drawn, Scatter, Sides, Value};
@@ -182,7 +182,18 @@ fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter:
         sum = (sum + film_keeps(film, fresnel, ggx, wo)).map(|kept| kept.clamp(LEAST_SHARE, 1.0));
     }
     let [reflection, transmission] = boundary.tints;
-    let factor = if multiscatter { sum.map(|sum| 1.0 / sum) } else { Rgb::WHITE };
+    let factor = match ggx.map(|ggx| RoughnessPlace::of(ggx.mean())) {
+        Some(place) if multiscatter => {
+            let average = match passage {
+                Passage::RoughBent => place.glass_average(EtaPlace::of(fresnel.eta)),
+                _ => place.reflected_average(),
+            };
+            // Approximation: what scatters again is colored as what passes, of which most of it is; as in Cycles.
+            let again = several_bounces(transmission.map(|c| c.clamp(0.0, 1.0)), average);
+            sum.zip(again, |sum, again| 1.0 + again * (1.0 - sum) / sum)
+        }
+        _ => Rgb::WHITE,
+    };
     let albedo = if !boundary.reflects {
         let passed = if matches!(passage, Passage::RoughBent) {
             averages.refracted.max(LEAST)

@@ -97,7 +97,7 @@ fn add_coat(builder: &mut Builder<'_>, weight: Rgb, coat: &Coat) -> Rgb {
     let mut below = 1.0;
     if ior > 1.0 {
         let lobe = coat_lobe(builder.ggx([sqr(unit(coat.roughness)); 2]), ior, wo);
-        below = left(lobe.albedo().above * share);
+        below = left(lobe.taken() * share);
         builder.push(weight * share, Class::Interface, frame, lobe);
     }
     // Of thickness 1, so that light goes 1/cos of its way within: tint^(1/cos) is left.
@@ -148,7 +148,7 @@ fn add_facets(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, fresnel
     let (ggx, frame) = builder.facets(surface.roughness, &surface.stretched);
     let frame = builder.frame(frame);
     let lobe = Reflection::new(ggx, fresnel, surface.multiscatter, builder.wo(frame));
-    let left = left(lobe.albedo().above);
+    let left = left(lobe.taken());
     builder.push(weight, Class::Interface, frame, lobe);
     left
 }

@@ -1,7 +1,7 @@
 //! Reflection at GGX microfacets or at a mirror: f cos θi = F(wo·h) D(h) G2 / (4 cos θo).
 
 use super::conductor::Conductor;
-use super::energy::{Energy, EtaPlace, Plain, RoughnessPlace, compensation, several_bounces};
+use super::energy::{Energy, EtaPlace, LEAST, Plain, RoughnessPlace, compensation, several_bounces};
 use super::fresnel::{Dielectric, Metal, schlick};
 use super::ggx::Ggx;
 use super::lobe::{Drawn, Scatter, Sides, Value};
@@ -32,6 +32,8 @@ pub(super) struct Reflection {
     /// What makes up for light that would leave after several bounces.
     factor: Rgb,
     albedo: Rgb,
+    /// What is gone for what lies below.
+    taken: Rgb,
 }
 
 impl Fresnel {
@@ -70,8 +72,9 @@ impl Fresnel {
                 Some(_) => fresnel.fit().albedo(plain),
                 None => fresnel.reflectance(cos),
             },
-            // Approximation: there are no tables for films, so that of a smooth surface; Cycles has the same.
-            Self::Film(fresnel) => fresnel.reflectance(cos),
+            // Approximation: there are no tables for films, so that of a smooth surface, as far as microfacets keep it;
+            // Cycles has the same.
+            Self::Film(fresnel) => fresnel.reflectance(cos) * plain.reflected,
         }
         .map(|c| c.max(0.0))
     }
@@ -102,8 +105,16 @@ impl Reflection {
             }
             _ => Rgb::WHITE,
         };
-        let albedo = factor * fresnel.albedo(cos, energy, plain);
-        Self { ggx, fresnel, factor, albedo }
+        let single = fresnel.albedo(cos, energy, plain);
+        let albedo = factor * single;
+        // Light that is lost between microfacets does not get below either, as in Cycles.
+        let taken = if multiscatter { albedo } else { single * (1.0 / plain.reflected.max(LEAST)) };
+        Self { ggx, fresnel, factor, albedo, taken }
+    }
+
+    /// Share of light that does not reach a layer below.
+    pub fn taken(&self) -> Rgb {
+        self.taken
     }
 
     /// See [`super::lobe::AnyLobe::width`].

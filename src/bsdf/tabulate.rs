@@ -125,7 +125,7 @@ fn write_tables() {
     let edges = Grid::new(flat, |place| of(place).0.reflected_edge).plain();
     let averages: Vec<f32> = reflected_nodes.chunks(COS_NODES).map(cosine_average).collect();
 
-    let (mut blends, mut refracted) = (Vec::new(), Vec::new());
+    let (mut blends, mut refracted, mut glass) = (Vec::new(), Vec::new(), Vec::new());
     for side in 0..2 {
         let grid = |value: fn(&Refractive) -> f32| {
             Grid::new([ETA_NODES, ROUGHNESS_NODES, COS_NODES], |place| value(&of(place).1[side * etas + place[0]]))
@@ -150,12 +150,22 @@ fn write_tables() {
             // What W has to be for the sum to be that.
             (kept - sum(e(&reflected_nodes), s, 0.0, v)) / (1.0 - f0)
         });
+        for (k, (s, (w, v))) in
+            s_nodes.chunks(COS_NODES).zip(w_nodes.chunks(COS_NODES).zip(v_nodes.chunks(COS_NODES))).enumerate()
+        {
+            let (eta, row) = (eta_at(2 * (k / ROUGHNESS_NODES)), k % ROUGHNESS_NODES);
+            let f0 = sqr((eta - 1.0) / (eta + 1.0));
+            let e = &reflected_nodes[row * COS_NODES..][..COS_NODES];
+            let kept: Vec<f32> =
+                (0..COS_NODES).map(|i| f0 * (e[i] - s[i]) + s[i] + (1.0 - f0) * (w[i] - v[i])).collect();
+            glass.push(cosine_average(&kept));
+        }
         blends.extend(s_nodes);
         refracted.extend(w_nodes.into_iter().zip(v_nodes).flat_map(|(w, v)| [w, v]));
     }
     let plain = reflected_nodes.iter().zip(schlick).flat_map(|(e, c)| [*e, c]);
     let edges = edges.into_iter().map(|edge| edge * EDGE_SCALE);
-    let values = plain.chain(averages).chain(blends).chain(refracted).chain(edges);
+    let values = plain.chain(averages).chain(blends).chain(refracted).chain(edges).chain(glass);
     let bytes: Vec<u8> = values.flat_map(|v| ((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_le_bytes()).collect();
     assert_eq!(bytes.len(), TABLES.len());
     std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/src/bsdf/energy.bin"), bytes).unwrap();

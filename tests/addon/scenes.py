@@ -530,14 +530,14 @@ def cloth():
 
 def glowing_lacquer():
     """Emission below a rough, tinted coat."""
-    lit_room(material("Lacquer", Base_Color=(0.2, 0.1, 0.1, 1.0), Coat_Weight=1.0, Coat_Roughness=0.5,
-                      Coat_Tint=(0.9, 0.7, 0.5, 1.0), Emission_Color=(0.3, 0.6, 0.9, 1.0), Emission_Strength=2.0))
+    lit_room(material("Lacquer", Base_Color=(0.0, 0.0, 0.0, 1.0), Coat_Weight=1.0, Coat_Roughness=0.5,
+                      Coat_Tint=(0.9, 0.7, 0.5, 1.0), Emission_Color=(0.3, 0.6, 0.9, 1.0), Emission_Strength=0.6))
 
 
 def glowing_velvet():
     """Emission below sheen, which stands on a coat."""
-    lit_room(material("Velvet", Base_Color=(0.1, 0.1, 0.1, 1.0), Sheen_Weight=1.0, Sheen_Roughness=0.5, Coat_Weight=0.4,
-                      Sheen_Tint=(0.9, 0.8, 0.7, 1.0), Emission_Color=(0.9, 0.6, 0.3, 1.0), Emission_Strength=2.0))
+    lit_room(material("Velvet", Base_Color=(0.0, 0.0, 0.0, 1.0), Sheen_Weight=1.0, Sheen_Roughness=0.5, Coat_Weight=0.4,
+                      Sheen_Tint=(0.9, 0.8, 0.7, 1.0), Emission_Color=(0.9, 0.6, 0.3, 1.0), Emission_Strength=0.6))
 
 
 def mixed_shaders():
