@@ -12,7 +12,7 @@ pub(super) static DECODE_U8: LazyLock<[f32; 256]> =
 /// Linear values at equal steps of encoded ones from 0 to 1, and one beyond.
 static STEPS: LazyLock<[f32; 1026]> = LazyLock::new(|| std::array::from_fn(|i| decode_f64(i as f64 / 1024.0) as f32));
 
-/// Light of an encoded colour from 0 to 1 whose values lie between codes, within 4e-7; alpha stays.
+/// Light of an encoded colour from 0 to 1 whose values lie between codes, within 5e-7 (of which 3.6e-7 are the chords'); alpha stays.
 pub(super) fn decode_all([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     let table = &*STEPS;
     let decoded = |value: f32| {
@@ -80,7 +80,7 @@ mod tests {
         for i in 0..=100_000 {
             let value = i as f32 / 100_000.0;
             let [r, g, b, a] = decode_all([value, 0.5 * value, 0.0, value]);
-            assert!((r - decode(value)).abs() < 4e-7 && (g - decode(0.5 * value)).abs() < 4e-7, "{value}: {r} {g}");
+            assert!((r - decode(value)).abs() < 5e-7 && (g - decode(0.5 * value)).abs() < 5e-7, "{value}: {r} {g}");
             assert_eq!((b, a), (0.0, value));
         }
     }

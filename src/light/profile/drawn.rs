@@ -13,6 +13,9 @@ pub struct Drawn(Arc<dyn Fn(Vec3, f32) -> Rgb + Send + Sync>);
 /// Directions over the polar and the azimuthal angle among which the largest factor is looked for.
 const LOOKED_AT: [usize; 2] = [64, 128];
 
+/// What may be missed between them is allowed for by this factor; it decides how often a light is chosen, no more.
+const MARGIN: f32 = 1.1;
+
 impl Drawn {
     /// What `factor` computes.
     pub fn new(factor: impl Fn(Vec3, f32) -> Rgb + Send + Sync + 'static) -> Self {
@@ -23,7 +26,8 @@ impl Drawn {
         (self.0)(w.normalize_or_zero().as_vec3(), dist)
     }
 
-    /// Largest factor of some directions, spread evenly within the angle `half` from `axis`, a metre away.
+    /// A little more than the largest factor of some directions, spread evenly within the angle `half` from `axis`, a metre
+    /// away.
     pub(super) fn peak(&self, axis: Vec3, half: f64) -> Rgb {
         let z = axis.as_dvec3().normalize_or(DVec3::Z);
         let x = z.any_orthonormal_vector();
@@ -39,7 +43,7 @@ impl Drawn {
                 peak = Rgb::new(peak.r.max(found.r), peak.g.max(found.g), peak.b.max(found.b));
             }
         }
-        peak
+        peak * MARGIN
     }
 }
 
