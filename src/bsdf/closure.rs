@@ -239,6 +239,7 @@ impl Builder<'_> {
     ) {
         let (ggx, frame) = self.facets(*roughness, stretched);
         let frame = self.frame(frame);
+        let frame = self.upright(frame);
         let lobe = Reflection::new(ggx, fresnel, *multiscatter, self.wo(frame));
         self.push(color, Class::Interface, frame, lobe);
     }
@@ -264,11 +265,8 @@ impl Builder<'_> {
             thin: false,
         };
         let ggx = self.ggx([sqr(unit(facets.roughness)); 2]);
-        self.push(
-            weight,
-            Class::Interface,
-            None,
-            Glass::new(ggx, boundary, facets.multiscatter && reflects, self.wo(None)),
-        );
+        let frame = self.upright(None);
+        let lobe = Glass::new(ggx, boundary, facets.multiscatter && reflects, self.wo(frame));
+        self.push(weight, Class::Interface, frame, lobe);
     }
 }

@@ -6,6 +6,7 @@ use super::ggx::Ggx;
 use super::lobe::{AnyLobe, Drawn, Scatter, Sides, Value};
 use super::softening::Softening;
 use super::surface::ThinFilm;
+use super::upright;
 use super::{Beneath, BsdfEval, BsdfSample, ByLobe, Closure, Features, Lobe, Surface};
 use crate::math::{Frame, ONE_MINUS_EPSILON, Rgb, Vec3};
 
@@ -86,6 +87,8 @@ pub struct Builder<'b> {
     widening: Widening,
     /// Whether interfaces reflect, and let pass.
     kept: [bool; 2],
+    /// Whether interfaces lean so that they mirror what is above the geometry.
+    upright: bool,
 }
 
 impl<'b> Builder<'b> {
@@ -100,7 +103,7 @@ impl<'b> Builder<'b> {
         bsdf.wo = Vec3::new(wo.x, wo.y, wo.z.abs());
         bsdf.ng = Vec3::new(ng.x, ng.y, ng.z * side);
         (bsdf.ns, bsdf.side, bsdf.softening) = (bsdf.ng, side, None);
-        Self { bsdf, entering, base: None, widening: Widening::default(), kept: [true; 2] }
+        Self { bsdf, entering, base: None, widening: Widening::default(), kept: [true; 2], upright: false }
     }
 
     /// The geometry stands for a smooth surface of normal `ns`, on the side of `wo`: what is lit and what is not goes by
@@ -126,6 +129,24 @@ impl<'b> Builder<'b> {
     /// What is added from now on reflects and refracts as `kept` says; diffuse light is as ever.
     pub fn keep(&mut self, kept: [bool; 2]) {
         self.kept = kept;
+    }
+
+    /// Interfaces that are added from now on lean towards the geometry where they would mirror what is below it.
+    pub fn set_upright(&mut self) {
+        self.upright = true;
+    }
+
+    /// `frame`, or one that leans from it; see [`Self::set_upright`].
+    pub(super) fn upright(&mut self, frame: FrameId) -> FrameId {
+        if !self.upright {
+            return frame;
+        }
+        let own = Frame { s: Vec3::X, t: Vec3::Y, n: Vec3::Z };
+        let given = frame.or(self.base).map_or(own, |frame| self.bsdf.frames[usize::from(frame)].0);
+        match upright::raised(given.n, self.bsdf.ng, self.bsdf.wo) {
+            Some(n) => self.frame(Some(Frame::from_z_and_tangent(n, given.s))).or(frame),
+            None => frame,
+        }
     }
 
     /// Microfacets of these widths, which count up to 1, made wider by normals that vary; `None` for a mirror.

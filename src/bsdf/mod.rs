@@ -34,6 +34,7 @@ mod thin;
 mod thin_film;
 mod toon;
 mod translucent;
+mod upright;
 
 pub use closure::{Closure, Microfacets};
 pub use conductor::Conductor;

@@ -93,6 +93,7 @@ fn add_coat(builder: &mut Builder<'_>, weight: Rgb, coat: &Coat) -> Rgb {
     }
     let ior = coat_ior(coat.ior);
     let frame = builder.frame(coat.frame);
+    let frame = builder.upright(frame);
     let wo = builder.wo(frame);
     let mut below = 1.0;
     if ior > 1.0 {
@@ -147,6 +148,7 @@ fn add_metal(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rg
 fn add_facets(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, fresnel: Fresnel) -> f32 {
     let (ggx, frame) = builder.facets(surface.roughness, &surface.stretched);
     let frame = builder.frame(frame);
+    let frame = builder.upright(frame);
     let lobe = Reflection::new(ggx, fresnel, surface.multiscatter, builder.wo(frame));
     let left = left(lobe.taken());
     builder.push(weight, Class::Interface, frame, lobe);
@@ -165,8 +167,9 @@ fn add_glass(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rg
         thin: surface.thin,
     };
     let ggx = builder.ggx([sqr(unit(surface.roughness)); 2]);
-    let lobe = Glass::new(ggx, boundary, surface.multiscatter, builder.wo(None));
-    builder.push(weight, Class::Interface, None, lobe);
+    let frame = builder.upright(None);
+    let lobe = Glass::new(ggx, boundary, surface.multiscatter, builder.wo(frame));
+    builder.push(weight, Class::Interface, frame, lobe);
 }
 
 /// The index that the specular level makes of `ior`.

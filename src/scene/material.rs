@@ -154,6 +154,8 @@ pub struct Material {
     pub normal: Option<NormalInput>,
     /// True where diffuse light fades towards the smooth surface, as its normals or those of a part are bent from it.
     pub bumps: bool,
+    /// True where interfaces lean so that they mirror what is above the geometry.
+    pub upright: bool,
     /// Baked occlusion; the factor is its strength.
     pub occlusion: Option<ScalarInput>,
     /// What it gives as the AOVs of the render's passes, in their order; empty where it gives nothing.

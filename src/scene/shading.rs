@@ -7,6 +7,7 @@ use crate::bsdf::{Bsdf, Builder, Closure, Microfacets, Softening, Stretched};
 use crate::desc::AnisotropyLaw;
 use crate::desc::graph::Value;
 use crate::math::{DVec3, Frame, Rgb, Vec3, sqr};
+use crate::shape::Shape;
 
 /// Normals and tangents of a part.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +51,10 @@ impl Scene {
         let material = self.material(it);
         let mut builder = self.builder(bsdf, it, frame);
         builder.keep(blur.kept());
+        // Strands have no geometric normal but this.
+        if material.upright && matches!(self.shape(self.instance(it.instance)), Shape::Mesh(_)) {
+            builder.set_upright();
+        }
         let widening = self.widening(it, blur, |it| self.shading_frame(it).n);
         let mut values = None;
         let lookups = self.lookups(it, |programs| programs.surface.as_ref(), &mut values);

@@ -290,6 +290,7 @@ impl Builder<'_> {
             holdout: desc.holdout,
             normal: normal_map,
             bumps,
+            upright: desc.bump_correction,
             occlusion,
             aovs,
             programs: programs.any().then(|| Arc::new(programs)),
