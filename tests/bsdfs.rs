@@ -370,8 +370,13 @@ fn check_energy(case: &Case, bsdf: &Bsdf, degrees: f32) {
         _ => 5e-3,
     };
     for c in total(furnace(bsdf, 1 << 15)).to_array() {
-        // The tables are made so that nothing is gained; what is left is the noise of the furnace. Films have none.
-        let most = if case.layered().is_some_and(|surface| surface.film.is_some()) { 1.03 } else { 1.003 };
+        // The tables are made so that nothing is gained; what is left is the noise of the furnace. Films have none, and
+        // for stretched microfacets stand round ones.
+        let most = match case.layered() {
+            Some(Surface { film: Some(_), .. }) => 1.03,
+            _ if case.is_stretched() => 1.005,
+            _ => 1.003,
+        };
         assert!(c <= most, "{} {degrees}: {c}", case.name);
         assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
     }

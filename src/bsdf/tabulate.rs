@@ -138,7 +138,10 @@ fn write_tables() {
             s.plain()
         };
         let v_nodes = v.plain();
-        let w_nodes = w.raised(&w.plain(), |place| {
+        // What is reflected more does not pass: at the nodes the sum stays.
+        let w_less: Vec<f32> =
+            w.plain().iter().zip(s.plain().iter().zip(&s_nodes)).map(|(w, (s, t))| w + s - t).collect();
+        let w_nodes = w.raised(&w_less, |place| {
             if near_none(place) {
                 return 0.0;
             }
