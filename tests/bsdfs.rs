@@ -374,7 +374,8 @@ fn check_energy(case: &Case, bsdf: &Bsdf, degrees: f32) {
         // for stretched microfacets stand round ones.
         let most = match case.layered() {
             Some(Surface { film: Some(_), .. }) => 1.03,
-            _ if case.is_stretched() => 1.005,
+            // Round microfacets stand for stretched ones.
+            _ if case.is_stretched() => 1.035,
             _ => 1.003,
         };
         assert!(c <= most, "{} {degrees}: {c}", case.name);
@@ -532,6 +533,41 @@ fn color_passes_of_cycles() {
             for (a, b) in ours.to_array().into_iter().zip(theirs) {
                 let tolerance = if *degrees > 70.0 { 0.012 } else { 0.006 };
                 assert!((a - b).abs() < tolerance, "{name}, {degrees}: {ours:?} {theirs:?}");
+            }
+        }
+    }
+}
+
+/// Normals that would mirror the view into the surface lean until they do not, whatever kind of interface they are of.
+#[test]
+fn bent_interfaces_mirror_what_is_above() {
+    let smooth = Microfacets { roughness: 0.0, ..FACETS };
+    let mirrors = [
+        Closure::Layered(Surface { roughness: 0.0, ..METAL }),
+        Closure::Glossy { color: Rgb::WHITE, facets: smooth },
+        Closure::Layered(Surface { coat: Some(Coat { roughness: 0.0, ..COAT }), base_color: Rgb::BLACK, ..METAL }),
+        Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: smooth, film: None },
+    ];
+    for closure in mirrors {
+        for tilt in [5.0_f32, 20.0, 40.0, 60.0] {
+            for degrees in [0.0, 30.0, 60.0, 85.0] {
+                let (ng, wo) = (view(tilt, 0.0, true), view(degrees, 0.4, true));
+                if wo.dot(ng) <= 0.01 {
+                    continue;
+                }
+                let mut bsdf = Bsdf::none();
+                let mut builder = Builder::new(&mut bsdf, wo, ng, true);
+                builder.set_upright();
+                builder.add(Rgb::WHITE, &closure);
+                builder.finish();
+                // The reflection is what is drawn last or first of what there is.
+                let drawn = [0.0, 1.0 - 1e-6].map(|uc| bsdf.sample(uc, [0.5; 2]));
+                let up = drawn.into_iter().flatten().find(|s| s.wi.dot(ng) > 0.0 && s.wi.dot(wo) > -0.999);
+                let up = up.unwrap_or_else(|| panic!("{closure:?} {tilt} {degrees}: {drawn:?}"));
+                assert!(up.weight.is_finite() && !up.weight.sum().is_black(), "{closure:?} {tilt} {degrees}: {up:?}");
+                if matches!(closure, Closure::Glossy { .. }) {
+                    assert!((up.weight.sum().g - 1.0).abs() < 1e-4, "{tilt} {degrees}: {up:?}");
+                }
             }
         }
     }

@@ -211,8 +211,6 @@ KNOWN = [
     "ball of rough glass is therefore darker in Cycles the more often light bounces within.",
     "- An opaque surface of an index below 1: Cycles reflects all beyond the critical angle and adds the light from below, "
     "more than there is; Penumbra takes the reciprocal index.",
-    "- Stretched microfacets along their wider direction: Cycles gives back up to 3 % more than they lose, Penumbra what "
-    "they lose.",
 ]
 """What the page says of what is in bold."""
 

@@ -48,13 +48,6 @@ impl Ggx {
         (self.x * self.y).sqrt()
     }
 
-    /// The width across the way from the normal to `w`.
-    pub fn across(self, w: Vec3) -> f32 {
-        let length_squared = sqr(w.x) + sqr(w.y);
-        let of = |x: f32, y: f32| ((sqr(self.x * y) + sqr(self.y * x)) / length_squared).sqrt();
-        if length_squared > 0.0 { of(w.x, w.y) } else { self.mean() }
-    }
-
     /// Density of microfacet normals.
     #[inline]
     pub fn d(self, h: Vec3) -> f32 {

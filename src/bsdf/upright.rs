@@ -45,7 +45,10 @@ mod tests {
                         Some(raised) => {
                             assert!(of(n) < t && (of(raised) - t).abs() < 1e-4, "{wo} {n} {raised}: {}", of(raised));
                             // In the plane of both, on the side of the given one.
-                            assert!(raised.cross(n).dot(Vec3::Z).abs() < 1e-5 && raised.dot(n) > 0.0, "{wo} {n} {raised}");
+                            assert!(
+                                raised.cross(n).dot(Vec3::Z).abs() < 1e-5 && raised.dot(n) > 0.0,
+                                "{wo} {n} {raised}"
+                            );
                         }
                     }
                 }

@@ -707,20 +707,45 @@ def coarse():
     lamp("POINT", (-4.0, -4.0, 3.0), energy=200.0, shadow_soft_size=0.1)
 
 
-def bumpy():
-    """Waves by a bump node on smooth balls, light from the side."""
-    matter = material("Waves", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6, 1.0))
+def _waves(matter, distance, scale):
+    """Waves by a bump node on the shader of a material."""
     tree = matter.node_tree
-    shader = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    shader = next(node for node in tree.nodes if "Normal" in node.inputs)
     bump, waves = tree.nodes.new("ShaderNodeBump"), tree.nodes.new("ShaderNodeTexWave")
-    bump.inputs["Distance"].default_value = 0.04
-    waves.inputs["Scale"].default_value = 1.5
+    bump.inputs["Distance"].default_value = distance
+    waves.inputs["Scale"].default_value = scale
     tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], waves.inputs["Vector"])
     tree.links.new(waves.outputs["Color"], bump.inputs["Height"])
     tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
-    _coarse_balls(matter)
+    return matter
+
+
+def bumpy():
+    """Waves by a bump node on smooth balls, light from the side."""
+    _coarse_balls(_waves(material("Waves", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6, 1.0)), 0.04, 1.5))
     lamp("SUN", rotation=(0.2, 1.2, 0.0), energy=3.0, angle=0.02)
     world(0.1)
+
+
+def bumpy_mirror():
+    """Steep waves on a white mirror in a white world: it shows 1 wherever it shows what is above it."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=128, ring_count=64, radius=1.6, location=(0.0, 0.0, 1.0))
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(
+        _waves(material("Mirror", Base_Color=(1.0, 1.0, 1.0, 1.0), Metallic=1.0, Roughness=0.0), 0.05, 3.0))
+    world(1.0)
+
+
+def bumpy_shine():
+    """Steep waves on rough metal, on plastic and below a lacquer."""
+    for i, inputs in enumerate(({"Metallic": 1.0, "Roughness": 0.3}, {"Roughness": 0.2},
+                                {"Roughness": 0.6, "Coat_Weight": 1.0, "Coat_Roughness": 0.1})):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=128, ring_count=64, radius=0.8, location=(1.8 * i - 1.8, 0.0, 0.8))
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(
+            _waves(material("Shine", Base_Color=(0.8, 0.7, 0.6, 1.0), **inputs), 0.03, 3.0))
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.5)
 
 
 def _shiny():

@@ -53,7 +53,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "glowing_velvet", "mixed_shaders",
              "leaf", "red_film", "glow", "filter_glossy", "no_caustics",
              "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
-             "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
+             "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy", "bumpy_shine",
              "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
              "relief", "relief_of_world", "relief_of_vectors", "relief_of_tangents", "relief_of_color", "colors_as_shaders",
              "bright_colors", "light_taken", "gobo_point", "gobo_of_directions", "gobo_spot", "gobo_of_normals", "gobo_area",
@@ -84,6 +84,12 @@ def test_a_transparent_film_is_seen_through_glass(blender, tmp_path):
         noise = np.std(found[..., c] - expected[..., c]) / np.sqrt(expected[..., c].size)
         assert abs(found[..., c].mean() - expected[..., c].mean()) <= 0.002 * expected[..., c].mean() + 4.0 * noise, c
     assert np.mean(np.abs(found[..., 3] - expected[..., 3]) > 0.1) < 0.02
+
+
+def test_bumps_on_mirrors_leave_no_black(blender, tmp_path):
+    paths, _ = blender.run("side_by_side", "bumpy_mirror", tmp_path, 64, 16)
+    for path in paths:
+        assert min(read(path)[f"ViewLayer.Combined.{c}"].min() for c in "RGB") > 0.99
 
 
 def test_the_sky_of_hosek_and_wilkie_is_that_of_cycles_by_another_fit(blender, tmp_path):
