@@ -15,6 +15,11 @@ pub(super) fn tell(reading: &Reading<'_>) {
         if matches!(&diagnostic, CompositionDiagnostic::MalformedLayer { asset_path, .. } if is_document(asset_path)) {
             continue;
         }
+        if let CompositionDiagnostic::UnreadableClip { asset_path, prim_path, .. } = &diagnostic
+            && reading.missing_clips.borrow().contains(&(prim_path.clone(), asset_path.clone()))
+        {
+            continue;
+        }
         let (layer, prim, what) = describe(&diagnostic);
         let place = match layer {
             Some(layer) => Place::file(layer),
