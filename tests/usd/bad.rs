@@ -237,7 +237,8 @@ fn spaces_of_colour_that_are_not_rendered_in_are_told() {
     let said = |space: &str| {
         let text = format!(
             "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" renderSettingsPrimPath = \"/R\" )\n\
-             def RenderSettings \"R\" {{ uniform token renderingColorSpace = \"{space}\" }}\n"
+             def RenderSettings \"R\" {{ uniform token renderingColorSpace = \"{space}\" }}\n\
+             def Sphere \"S\" {{}}\n"
         );
         load_text(&text).said
     };

@@ -46,14 +46,15 @@ fn explicit(name: &str, clips: &str, manifest: &str, active: &str) -> String {
 /// What only clips have is reached though more than one set has it; the first set by name is the strongest.
 #[test]
 fn sets_that_have_the_same_attributes_are_read() {
-    let sets = explicit("a", "@./a.usda@", "manifest.usda", "(0, 0)") + &explicit("b", "@./b.usda@", "manifest.usda", "(0, 0)");
+    let sets = explicit("a", "@./a.usda@", "manifest.usda", "(0, 0)")
+        + &explicit("b", "@./b.usda@", "manifest.usda", "(0, 0)");
     let files = [
         ("manifest.usda", "token visibility"),
         ("a.usda", "token visibility.timeSamples = { 0: \"inherited\", 5: \"invisible\" }"),
         ("b.usda", "token visibility.timeSamples = { 0: \"invisible\", 5: \"inherited\" }"),
     ];
     for (frame, shown) in [(2.0, 1), (7.0, 0)] {
-        let loaded = read(&clipped("T", &sets, ""), &files, frame);
+        let loaded = read(&(clipped("T", &sets, "") + "def Sphere \"Other\" {}\n"), &files, frame);
         loaded.said_nothing();
         assert_eq!(loaded.all("/T").len(), shown, "at {frame}");
     }
@@ -108,7 +109,10 @@ fn clips_that_are_not_there_are_told_once() {
         ("a.usda", "double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 4: (4, 0, 0) }"),
     ];
     let prims = [
-        ("Gone", explicit("default", "@./a.usda@, @./no.usda@, @./nor.usda@", "manifest.usda", "(0, 0), (5, 1), (7, 2)")),
+        (
+            "Gone",
+            explicit("default", "@./a.usda@, @./no.usda@, @./nor.usda@", "manifest.usda", "(0, 0), (5, 1), (7, 2)"),
+        ),
         ("Bare", explicit("default", "@./a.usda@", "none.usda", "(0, 0)")),
         ("Beyond", explicit("default", "@./a.usda@", "manifest.usda", "(0, 0), (5, 3)")),
     ];

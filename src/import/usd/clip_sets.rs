@@ -35,7 +35,10 @@ pub(super) fn mend(reading: &Reading<'_>, prim: &Prim, sites: &[SpecSite]) {
         if let Some((manifest, site)) = set.get("manifestAssetPath")
             && let Some(asset) = manifest.as_str().filter(|asset| is_missing(&site.layer, asset))
         {
-            reading.warn(prim.path(), format!("the manifest @{asset}@ of its value clips is not found; they are left out"));
+            reading.warn(
+                prim.path(),
+                format!("the manifest @{asset}@ of its value clips is not found; they are left out"),
+            );
         }
     }
 }
@@ -108,7 +111,8 @@ fn write_out(reading: &Reading<'_>, prim: &Prim, name: &str, set: &Set<'_>, site
         _ => None,
     };
     let pattern = set.get("templateAssetPath").and_then(|(pattern, _)| pattern.as_str());
-    let Some(template) = pattern.filter(|p| !p.starts_with('`')).and_then(|pattern| Template::of(pattern, number)) else {
+    let Some(template) = pattern.filter(|p| !p.starts_with('`')).and_then(|pattern| Template::of(pattern, number))
+    else {
         return;
     };
     let times = template.times();

@@ -22,8 +22,7 @@ pub(super) struct Template {
 impl Template {
     /// The template `pattern`, with the values of the set's other fields; `None` where OpenUSD takes it for none.
     pub fn of(pattern: &str, field: impl Fn(&str) -> Option<f64>) -> Option<Self> {
-        let [start, end, stride] =
-            [field("templateStartTime")?, field("templateEndTime")?, field("templateStride")?];
+        let [start, end, stride] = [field("templateStartTime")?, field("templateEndTime")?, field("templateStride")?];
         let offset = field("templateActiveOffset");
         let steps = (end - start) / stride;
         if !(stride > 0.0 && (0.0..MOST).contains(&steps)) || offset.is_some_and(|offset| offset.abs() > stride) {

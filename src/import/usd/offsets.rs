@@ -36,7 +36,8 @@ pub(super) fn tell(reading: &Reading<'_>, layer: &str, data: &dyn AbstractData, 
     if spec.is_abs_root()
         && let Some(Value::LayerOffsetVec(offsets)) = field(FieldKey::SubLayerOffsets).as_deref()
     {
-        let names = field(FieldKey::SubLayers).and_then(|value| value.into_owned().try_as_string_vec()).unwrap_or_default();
+        let names =
+            field(FieldKey::SubLayers).and_then(|value| value.into_owned().try_as_string_vec()).unwrap_or_default();
         for (name, offset) in names.iter().zip(offsets) {
             told(&format!("its sublayer @{name}@"), offset);
         }

@@ -162,11 +162,11 @@ fn cylinder(light: &Light<'_>, emission: [f64; 3]) -> LightKind {
     let mut radius = light.size("inputs:radius", 0.5) * light.round(&[y, z], "an elliptic cylinder");
     let length = light.size("inputs:length", 1.0) * x;
     if light.values.flag("treatAsLine").unwrap_or(false) {
-        if radius == 0.0 && light.normalized() {
-            // What it emits in all does not depend on it.
-            radius = LINE * length;
-        }
-        light.values.note(format!("treatAsLine: it is rendered as a cylinder with a radius of {radius} m"));
+        // What a normalised one emits in all does not depend on the radius.
+        let is_thin = radius == 0.0 && light.normalized();
+        radius = if is_thin { LINE * length } else { radius };
+        let how = if is_thin { "a thousandth of its length in radius" } else { "of its radius" };
+        light.values.note(format!("treatAsLine: it is rendered as a cylinder {how}"));
     }
     let radiance = times(emission, light.per_area(2.0 * PI * radius * length));
     LightKind::Cylinder { radius, length, radiance }
