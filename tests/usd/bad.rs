@@ -276,3 +276,16 @@ def Sphere "M" {
     assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
     assert_eq!(["/M", "/Ref", "/Pay", "/Sound"].map(|path| loaded.origin(path)[0]), [4.0, 4.0, 4.0, 1.5]);
 }
+
+#[test]
+fn chains_that_are_too_long_are_no_cycles() {
+    let link = |i: usize| format!("def \"R{i}\" ( references = </R{}> ) {{}}\n", i + 1);
+    let text: String = (0..100).map(link).collect();
+    let text = format!("#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n{text}def Sphere \"R100\" {{}}\n");
+    let loaded = load_text(&text);
+    let said = loaded.said_of("/R0: is composed through a chain of 99 arcs, more than are followed");
+    assert!(said.ends_with("<R99> is left out") || said.ends_with("</R99> is left out"), "{said}");
+    assert!(!loaded.said.iter().any(|said| said.contains("of itself")), "{:#?}", loaded.said);
+    assert!(loaded.all("/R0").is_empty());
+    loaded.one("/R2");
+}

@@ -7,6 +7,9 @@ use super::stage::Reading;
 use super::wording::plain;
 use crate::error::Place;
 
+/// Arcs, each within the next, which the openusd crate (0.8) takes for a cycle whatever they are.
+const LONGEST: usize = 99;
+
 /// Tells of everything that composition left out so far.
 pub(super) fn tell(reading: &Reading<'_>) {
     let mut told: Vec<(Place, String)> = Vec::new();
@@ -42,7 +45,12 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
         D::ArcCycle(cycle) => {
             let arcs: Vec<String> =
                 cycle.hops.iter().map(|hop| format!("{} @{}@<{}>", arc_name(hop.arc), hop.layer, hop.path)).collect();
-            let what = format!("is composed of itself: {}; the last is left out", arcs.join(", "));
+            let what = match &arcs[..] {
+                [.., last] if arcs.len() >= LONGEST => format!(
+                    "is composed through a chain of {LONGEST} arcs, more than are followed: what is {last} is left out"
+                ),
+                _ => format!("is composed of itself: {}; the last is left out", arcs.join(", ")),
+            };
             (Some(&cycle.root_layer), Some(&cycle.composing), what)
         }
         D::UnresolvedLayer { asset_path, arc, introduced_by, site_path } => {
