@@ -410,6 +410,95 @@ def material(path):
 
 
 CASES = {
+    "instances": {
+        "root.usda": HEAD.format("")
+        + """
+        def Mesh "One" (instanceable = true; references = @asset.usda@</Mesh>) {}
+        def Mesh "Two" (instanceable = true; references = @asset.usda@</Mesh>) {
+            double3 xformOp:translate = (1, 2, 3)
+            uniform token[] xformOpOrder = ["xformOp:translate"]
+        }
+        def SphereLight "Lamp" (instanceable = true; references = @asset.usda@</Lamp>) {}
+        def Camera "View" (instanceable = true; references = @asset.usda@</View>) {}
+        def PointInstancer "Row" (instanceable = true; references = @asset.usda@</Row>) {
+            double3 xformOp:translate = (0, 7, 0)
+            uniform token[] xformOpOrder = ["xformOp:translate"]
+        }
+        def PointInstancer "Out" {
+            rel prototypes = </Out/Tile>
+            int[] protoIndices = [0, 0]
+            point3f[] positions = [(1, 2, 3), (4, 5, 6)]
+            def Mesh "Tile" (instanceable = true; references = @asset.usda@</Mesh>) {}
+        }
+        """,
+        "asset.usda": """#usda 1.0
+        def Mesh "Mesh" {""" + MESH + """
+            def Mesh "Below" {""" + MESH + """}
+        }
+        def SphereLight "Lamp" { float inputs:radius = 2 }
+        def Camera "View" { float focalLength = 30 }
+        def PointInstancer "Row" {
+            rel prototypes = </Row/Tile>
+            int[] protoIndices = [0, 0]
+            point3f[] positions = [(1, 0, 0), (2, 0, 0)]
+            def Mesh "Tile" {""" + MESH + """}
+        }
+        """,
+    },
+    "clips": {
+        "root.usda": HEAD.format("")
+        + """
+        def Mesh "Sets" (
+            clips = {
+                dictionary a = {
+                    asset[] assetPaths = [@c.03.usda@]
+                    asset manifestAssetPath = @manifest.usda@
+                    string primPath = "/M"
+                    double2[] active = [(0, 0)]
+                    double2[] times = [(0, 0), (10, 10)]
+                }
+                dictionary b = {
+                    asset[] assetPaths = [@c.06.usda@]
+                    asset manifestAssetPath = @manifest.usda@
+                    string primPath = "/M"
+                    double2[] active = [(0, 0)]
+                    double2[] times = [(0, 0), (10, 10)]
+                }
+            }
+        ) {""" + MESH + """}
+        def Mesh "Holes" (
+            clips = {
+                dictionary default = {
+                    string templateAssetPath = "./c.##.usda"
+                    double templateStartTime = 2
+                    double templateEndTime = 8
+                    double templateStride = 1
+                    double templateActiveOffset = 0.5
+                    string primPath = "/M"
+                }
+            }
+        ) {
+            double3 xformOp:translate
+            uniform token[] xformOpOrder = ["xformOp:translate"]
+        """ + MESH + """}
+        """,
+        "manifest.usda": """#usda 1.0
+        over "M" { token visibility
+        }
+        """,
+        "c.03.usda": """#usda 1.0
+        over "M" {
+            token visibility.timeSamples = { 3: "inherited", 5: "invisible" }
+            double3 xformOp:translate.timeSamples = { 3: (3, 0, 0) }
+        }
+        """,
+        "c.06.usda": """#usda 1.0
+        over "M" {
+            token visibility.timeSamples = { 3: "invisible", 5: "inherited" }
+            double3 xformOp:translate.timeSamples = { 6: (6, 0, 0), 9: (0, 9, 0) }
+        }
+        """,
+    },
     "composition": {
         "root.usda": HEAD.format("    subLayers = [@over.usda@ (offset = 2; scale = 0.5), @base.usda@]")
         + """

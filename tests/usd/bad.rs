@@ -209,3 +209,83 @@ fn sizes_of_lights_have_no_sign() {
     ];
     assert_eq!(told(text), (expected.map(str::to_string).to_vec(), 2));
 }
+
+#[test]
+fn tokens_that_are_none_of_the_schema_s_are_told() {
+    let text = r#"def Mesh "M" {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        uniform token orientation = "upwards"
+        uniform token triangleSubdivisionRule = "rough"
+        token visibility = "hidden"
+    }"#;
+    let expected = [
+        "/M: there is no visibility \"hidden\"; inherited is used",
+        "/M: there is no triangleSubdivisionRule \"rough\"; catmullClark is used",
+        "/M: there is no orientation \"upwards\"; rightHanded is used",
+    ];
+    let (mut said, faults) = told(text);
+    said.sort();
+    let mut expected = expected.map(str::to_string).to_vec();
+    expected.sort();
+    assert_eq!((said, faults), (expected, 3));
+}
+
+#[test]
+fn spaces_of_colour_that_are_not_rendered_in_are_told() {
+    let said = |space: &str| {
+        let text = format!(
+            "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" renderSettingsPrimPath = \"/R\" )\n\
+             def RenderSettings \"R\" {{ uniform token renderingColorSpace = \"{space}\" }}\n\
+             def Sphere \"S\" {{}}\n"
+        );
+        load_text(&text).said
+    };
+    assert_eq!(said("lin_rec709"), [""; 0]);
+    let told = said("lin_ap1");
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].ends_with("/R: renderingColorSpace is \"lin_ap1\"; it is rendered in lin_rec709 all the same"));
+}
+
+/// OpenUSD uses no offset instead, and says so.
+#[test]
+fn offsets_that_turn_time_back_are_told() {
+    let root = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" subLayers = [@./sub.usda@ (offset = 2; scale = 0)] )
+def "Ref" ( references = @./mover.usda@</M> (offset = 3; scale = -1) ) {}
+def "Pay" ( payload = @./mover.usda@</M> (scale = -2) ) {}
+def "Sound" ( references = @./mover.usda@</M> (offset = 1; scale = 2) ) {}
+"#;
+    let mover = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+def Sphere "M" {
+    double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 10: (10, 0, 0) }
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+"#;
+    let files = [("root.usda", root), ("mover.usda", mover), ("sub.usda", mover)];
+    let (_dir, path) = super::times::stage_of(&files);
+    let loaded = try_load(&path, &super::at_frame(4.0)).unwrap();
+    let told = [
+        "root.usda: its sublayer @./sub.usda@ has the offset 2 and the scale 0",
+        "/Ref: its reference @./mover.usda@ has the offset 3 and the scale -1",
+        "/Pay: its payload @./mover.usda@ has the offset 0 and the scale -2",
+    ];
+    told.iter().for_each(|what| _ = loaded.said_of(what));
+    assert_eq!(loaded.said.len(), told.len(), "{:#?}", loaded.said);
+    assert_eq!(["/M", "/Ref", "/Pay", "/Sound"].map(|path| loaded.origin(path)[0]), [4.0, 4.0, 4.0, 1.5]);
+}
+
+#[test]
+fn chains_that_are_too_long_are_no_cycles() {
+    let link = |i: usize| format!("def \"R{i}\" ( references = </R{}> ) {{}}\n", i + 1);
+    let text: String = (0..100).map(link).collect();
+    let text = format!("#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n{text}def Sphere \"R100\" {{}}\n");
+    let loaded = load_text(&text);
+    let said = loaded.said_of("/R0: is composed through a chain of 99 arcs, more than are followed");
+    assert!(said.ends_with("<R99> is left out") || said.ends_with("</R99> is left out"), "{said}");
+    assert!(!loaded.said.iter().any(|said| said.contains("of itself")), "{:#?}", loaded.said);
+    assert!(loaded.all("/R0").is_empty());
+    loaded.one("/R2");
+}

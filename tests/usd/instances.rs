@@ -235,3 +235,46 @@ fn equal_meshes_are_one_without_being_instances() {
     assert_eq!(loaded.origin("/B"), [0.0, 0.0, 5.0]);
     assert_eq!(loaded.scene.meshes.len(), 1 + others.len());
 }
+
+/// OpenUSD's: an instance is itself a prim of the stage, whatever its type, and only what is below it is shared.
+#[test]
+fn instances_that_are_shapes_lights_or_cameras_are_there() {
+    let text = r#"#usda 1.0
+( metersPerUnit = 1 upAxis = "Y" )
+class Mesh "_Tile" {
+    int[] faceVertexCounts = [3]
+    int[] faceVertexIndices = [0, 1, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    uniform token subdivisionScheme = "none"
+    def Sphere "Knob" {}
+}
+class PointInstancer "_Row" {
+    rel prototypes = </_Row/Ball>
+    int[] protoIndices = [0, 0]
+    point3f[] positions = [(1, 0, 0), (2, 0, 0)]
+    def Sphere "Ball" {}
+}
+class SphereLight "_Lamp" {}
+class Camera "_View" {}
+def Mesh "One" ( instanceable = true inherits = </_Tile> ) {}
+def Mesh "Two" ( instanceable = true inherits = </_Tile> ) {
+    double3 xformOp:translate = (0, 0, 5)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+def PointInstancer "Row" ( instanceable = true inherits = </_Row> ) {
+    double3 xformOp:translate = (0, 7, 0)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+}
+def SphereLight "Lamp" ( instanceable = true inherits = </_Lamp> ) {}
+def Camera "View" ( instanceable = true inherits = </_View> ) {}
+"#;
+    let loaded = super::load_text(text);
+    loaded.said_nothing();
+    assert_eq!(loaded.origin("/Two"), [0.0, 0.0, 5.0]);
+    assert_eq!(loaded.one("/One").shape, loaded.one("/Two").shape);
+    assert_eq!(loaded.origin("/Two/Knob"), [0.0, 0.0, 5.0]);
+    assert_eq!(loaded.one("/One/Knob").shape, loaded.one("/Two/Knob").shape);
+    let row: Vec<_> = loaded.all("/Row/Ball").iter().map(|i| i.transform.translation.to_array()).collect();
+    assert_eq!(row, [[1.0, 7.0, 0.0], [2.0, 7.0, 0.0]]);
+    assert_eq!((loaded.scene.lights.len(), loaded.scene.cameras.len()), (1, 1));
+}

@@ -3,6 +3,7 @@
 
 mod bad;
 mod bindings;
+mod clips;
 mod composition;
 mod corpus;
 mod draw_modes;

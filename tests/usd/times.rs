@@ -8,7 +8,7 @@ use penumbra::math::DVec3;
 use super::{Loaded, at_frame, load, near, try_load};
 
 /// A stage of several files, the first of which is its root layer.
-fn stage_of(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
+pub(super) fn stage_of(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in files {
         std::fs::write(dir.path().join(name), text).unwrap();

@@ -4,12 +4,12 @@
 
 use std::collections::HashSet;
 
-use openusd::ar::{DefaultResolver, ResolvedPath, Resolver};
+use openusd::ar::{DefaultResolver, Resolver};
 use openusd::sdf::{self, AbstractData, FieldKey, Value};
 use openusd::usd::{ClipsAPI, Prim};
 
-use super::layer;
 use super::stage::Reading;
+use super::{clip_sets, layer};
 
 /// Where clips were declared.
 pub(super) type Declared = HashSet<(String, sdf::Path)>;
@@ -20,11 +20,13 @@ pub(super) fn declare(reading: &Reading<'_>, prim: &Prim) {
     let has_clips = |layer: &str, path: &sdf::Path| {
         stage.layer(layer).is_some_and(|layer| layer.data().has_field(path, FieldKey::Clips.as_str()))
     };
-    let sites = prim.prim_stack().unwrap_or_default();
-    let Some(site) = sites.into_iter().find(|site| has_clips(&site.layer, &site.path)) else { return };
+    let mut sites = prim.prim_stack().unwrap_or_default();
+    sites.retain(|site| has_clips(&site.layer, &site.path));
+    let Some(site) = sites.first() else { return };
     if !reading.declared.borrow_mut().insert((site.layer.clone(), site.path.clone())) {
         return;
     }
+    clip_sets::mend(reading, prim, &sites);
     let clips = ClipsAPI::from_prim_unchecked(prim.clone());
     let mut declared = Vec::new();
     for set in clips.clip_set_names().unwrap_or_default() {
@@ -32,13 +34,8 @@ pub(super) fn declare(reading: &Reading<'_>, prim: &Prim) {
         let root = root.unwrap_or_else(|| prim.path().clone());
         match clips.clip_manifest_asset_path(&set).ok().flatten() {
             Some(asset) => {
-                let manifest = asset.resolved_path().map_or_else(
-                    || {
-                        DefaultResolver::new()
-                            .create_identifier(asset.asset_path(), Some(&ResolvedPath::new(&site.layer)))
-                    },
-                    ToOwned::to_owned,
-                );
+                let resolved = asset.resolved_path().map(ToOwned::to_owned);
+                let manifest = resolved.unwrap_or_else(|| clip_sets::identifier(&site.layer, asset.asset_path()));
                 if let Some(manifest) = open(reading, &manifest) {
                     declared.extend(attributes(&*manifest, &root));
                 }
@@ -50,22 +47,28 @@ pub(super) fn declare(reading: &Reading<'_>, prim: &Prim) {
             }
         }
     }
+    // Several sets may have the same.
+    let mut known = HashSet::new();
     declared.retain(|(below, _)| {
-        let attribute = below.at(prim.path()).and_then(|path| stage.attribute(path).ok());
+        let Some(path) = below.at(prim.path()).filter(|path| known.insert(path.clone())) else { return false };
+        let attribute = stage.attribute(path).ok();
         attribute.and_then(|a| a.property_stack().ok()).is_some_and(|stack| stack.is_empty())
     });
     if declared.is_empty() {
         return;
     }
     let Some(mut layer) = stage.layer_mut(&site.layer) else { return };
-    // One that can't be declared is as absent as before.
-    let _ = layer.edit(|edit| {
+    let edited = layer.edit(|edit| {
         for (below, type_name) in declared {
             let Some(path) = below.at(&site.path) else { continue };
             sdf::AttributeSpec::new(edit.data_mut(), path, type_name.as_str(), sdf::Variability::Varying, false)?;
         }
         Ok(())
     });
+    drop(layer);
+    if let Err(error) = edited {
+        reading.warn(prim.path(), format!("what only its value clips have is left out: {error}"));
+    }
 }
 
 /// The manifest at `path`; what is wrong with one is told by the crate, which opens it as well.

@@ -1,14 +1,15 @@
 //! Inherits and specializes that lead back to where they started. OpenUSD leaves the last of them out; the
 //! openusd crate (0.8) follows them until the stack ends, so they are taken out of its layers, in memory,
 //! before anything below them is composed; those that go through several layers: [`implied`](super::implied). As
-//! that looks at every prim of a layer, it notes which stages have value clips, and the classes of referenced layers.
+//! that looks at every prim of a layer, it notes which stages have value clips, and the classes of referenced layers,
+//! and tells of offsets that count for nothing.
 
 use std::collections::{HashMap, HashSet};
 
 use openusd::sdf::{self, ChildrenKey, FieldKey, Value};
 
-use super::layer;
 use super::stage::Reading;
+use super::{layer, offsets};
 use crate::error::Place;
 
 pub(super) const ARCS: [FieldKey; 2] = [FieldKey::InheritPaths, FieldKey::Specializes];
@@ -80,6 +81,7 @@ fn collect(reading: &Reading<'_>, identifier: &str, arcs: &mut Vec<Arc>) {
     };
     let mut stack = vec![sdf::Path::abs_root()];
     while let Some(spec) = stack.pop() {
+        offsets::tell(reading, identifier, data, &spec);
         if data.has_field(&spec, FieldKey::Clips.as_str()) {
             reading.clipped.set(true);
         }

@@ -7,12 +7,20 @@ use super::stage::Reading;
 use super::wording::plain;
 use crate::error::Place;
 
+/// Arcs, each within the next, which the openusd crate (0.8) takes for a cycle whatever they are.
+const LONGEST: usize = 99;
+
 /// Tells of everything that composition left out so far.
 pub(super) fn tell(reading: &Reading<'_>) {
     let mut told: Vec<(Place, String)> = Vec::new();
     for diagnostic in reading.stage.composition_errors() {
         // MaterialX documents are read by the materials, not by composition.
         if matches!(&diagnostic, CompositionDiagnostic::MalformedLayer { asset_path, .. } if is_document(asset_path)) {
+            continue;
+        }
+        if let CompositionDiagnostic::UnreadableClip { asset_path, prim_path, .. } = &diagnostic
+            && reading.missing_clips.borrow().contains(&(prim_path.clone(), asset_path.clone()))
+        {
             continue;
         }
         let (layer, prim, what) = describe(&diagnostic);
@@ -37,7 +45,12 @@ fn describe(diagnostic: &CompositionDiagnostic) -> (Option<&str>, Option<&sdf::P
         D::ArcCycle(cycle) => {
             let arcs: Vec<String> =
                 cycle.hops.iter().map(|hop| format!("{} @{}@<{}>", arc_name(hop.arc), hop.layer, hop.path)).collect();
-            let what = format!("is composed of itself: {}; the last is left out", arcs.join(", "));
+            let what = match &arcs[..] {
+                [.., last] if arcs.len() >= LONGEST => format!(
+                    "is composed through a chain of {LONGEST} arcs, more than are followed: what is {last} is left out"
+                ),
+                _ => format!("is composed of itself: {}; the last is left out", arcs.join(", ")),
+            };
             (Some(&cycle.root_layer), Some(&cycle.composing), what)
         }
         D::UnresolvedLayer { asset_path, arc, introduced_by, site_path } => {

@@ -12,6 +12,7 @@ use super::bindings::Bindings;
 use super::draw_mode::DrawMode;
 use super::kinds::Kind;
 use super::stage::Reading;
+use super::values::pick;
 use super::xform::Xform;
 use super::{retime, skel};
 use crate::desc::Motion;
@@ -126,7 +127,11 @@ impl Context {
         for name in names {
             match name.as_str() {
                 "xformOpOrder" if kind.xformable => inner.pose = self.pose_of(clock, prim, names),
-                "visibility" if kind.imageable => inner.invisible |= token(reading, prim, name) == "invisible",
+                "visibility" if kind.imageable => {
+                    let token = reading.value::<Token>(prim, name);
+                    let choices = [("inherited", false), ("invisible", true)];
+                    inner.invisible |= pick(reading, prim, "visibility", token, &choices);
+                }
                 "model:drawMode" => inner.draw_mode = DrawMode::of(reading, prim, self.draw_mode),
                 "purpose" if kind.imageable => inner.purpose = self.purpose_of(reading, prim, name),
                 "renderVisibility" | "proxyVisibility" | "guideVisibility" if kind.imageable => {

@@ -29,6 +29,11 @@ pub(super) fn read(reading: &Reading<'_>) -> (RenderDesc, Vec<Place>) {
             values.warn(format!("includedPurposes names \"{other}\", which is no purpose: it is ignored"));
         }
     }
+    // Names of one space, before and since OpenUSD 25.05.
+    let own = ["", "lin_rec709", "lin_rec709_scene"];
+    if let Some(space) = values.token("renderingColorSpace").filter(|space| !own.contains(&space.as_str())) {
+        values.warn(format!("renderingColorSpace is \"{space}\"; it is rendered in lin_rec709 all the same"));
+    }
     let (aovs, places) = shown.into_iter().unzip();
     let desc = RenderDesc {
         framing,

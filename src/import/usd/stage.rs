@@ -12,6 +12,7 @@ use openusd::usd::{Attribute, InterpolationType, Prim, Stage, TimeCode};
 
 use super::super::ImportOptions;
 use super::authored::Authored;
+use super::clip_sets::Missing;
 use super::clips::Declared;
 use super::files::Files;
 use super::layer::{Kept, Met, Site};
@@ -51,6 +52,7 @@ pub(super) struct Reading<'a> {
     /// Classes that prims of layers that are referred to name; they are implied in others.
     pub classes: RefCell<HashSet<sdf::Path>>,
     pub declared: RefCell<Declared>,
+    pub missing_clips: RefCell<Missing>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
     /// Whether there is a material of a MaterialX document at a path without prim.
@@ -107,6 +109,7 @@ impl<'a> Reading<'a> {
             clipped: Cell::new(false),
             classes: RefCell::default(),
             declared: RefCell::default(),
+            missing_clips: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
             skeletons: skel::Skeletons::default(),

@@ -14,6 +14,22 @@ pub(super) struct Values<'a> {
     pub path: &'a sdf::Path,
 }
 
+/// What `token`, the value of `name`, stands for among `choices`; otherwise the first of them, with a warning where
+/// there is a token.
+pub(super) fn pick<T: Copy>(
+    reading: &Reading<'_>,
+    prim: &Prim,
+    name: &str,
+    token: Option<Token>,
+    choices: &[(&str, T)],
+) -> T {
+    let found = token.as_ref().and_then(|token| choices.iter().find(|(choice, _)| token == choice));
+    if let (None, Some(token)) = (found, &token) {
+        reading.warn(prim.path(), format!("there is no {name} \"{token}\"; {} is used", choices[0].0));
+    }
+    found.unwrap_or(&choices[0]).1
+}
+
 impl Values<'_> {
     /// A float, authored or the schema's fallback; `None` where there is none or no number.
     pub fn number(&self, name: &str) -> Option<f64> {
@@ -79,5 +95,10 @@ impl Values<'_> {
 
     pub fn warn(&self, what: impl Into<String>) {
         self.reading.warn(self.path, what);
+    }
+
+    /// Tells of what may be as it should be.
+    pub fn note(&self, what: impl Into<String>) {
+        self.reading.warnings.borrow_mut().note(&self.reading.place_of(self.path), what);
     }
 }

@@ -223,12 +223,8 @@ impl<'r, 'a> Walk<'r, 'a> {
         if draw_mode::replace(self, prim, &kind, &names, [context, &inner], shown) {
             return None;
         }
-        if is_instance {
-            inner.hand_down_primvars(reading, prim, &names);
-            prototypes::instance(self, prim, inner, shown);
-            return None;
-        }
         match kind.role {
+            // Instances share what is below them; a shape, a light or a camera that is one is itself.
             Role::Leaf => self.leaf(prim, &kind, context, &inner, &names, shown),
             Role::Instancer => {
                 if !inner.hidden(reading) {
@@ -239,6 +235,10 @@ impl<'r, 'a> Walk<'r, 'a> {
             Role::Group | Role::Aside => {}
         }
         inner.hand_down_primvars(reading, prim, &names);
+        if is_instance {
+            prototypes::instance(self, prim, inner, shown);
+            return None;
+        }
         Some(inner)
     }
 

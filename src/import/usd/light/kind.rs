@@ -9,6 +9,9 @@ use crate::desc::{ColorSpace, LightKind};
 /// Axes whose lengths differ by less have the same scale.
 const EVEN: f64 = 1e-4;
 
+/// Radius of a line that has none, by its length.
+const LINE: f64 = 1e-3;
+
 /// What the light is; `None`, with a warning, for a kind that is not read.
 pub(super) fn read(light: &Light<'_>, images: &mut Images) -> Option<LightKind> {
     let emission = color::emission(&light.values);
@@ -156,10 +159,14 @@ fn rect(light: &Light<'_>, emission: [f64; 3], images: &mut Images) -> LightKind
 
 fn cylinder(light: &Light<'_>, emission: [f64; 3]) -> LightKind {
     let [x, y, z] = light.scale();
-    let radius = light.size("inputs:radius", 0.5) * light.round(&[y, z], "an elliptic cylinder");
+    let mut radius = light.size("inputs:radius", 0.5) * light.round(&[y, z], "an elliptic cylinder");
     let length = light.size("inputs:length", 1.0) * x;
     if light.values.flag("treatAsLine").unwrap_or(false) {
-        light.values.warn("treatAsLine: it is rendered as a cylinder of its radius");
+        // What a normalised one emits in all does not depend on the radius.
+        let is_thin = radius == 0.0 && light.normalized();
+        radius = if is_thin { LINE * length } else { radius };
+        let how = if is_thin { "a thousandth of its length in radius" } else { "of its radius" };
+        light.values.note(format!("treatAsLine: it is rendered as a cylinder {how}"));
     }
     let radiance = times(emission, light.per_area(2.0 * PI * radius * length));
     LightKind::Cylinder { radius, length, radiance }
@@ -314,6 +321,25 @@ mod tests {
         near(intensity("/PointN"), 2.0 * 0.01);
         near(intensity("/Zero"), 2.0 * 0.01);
         assert_eq!(intensity("/Nothing"), 0.0);
+    }
+
+    /// Normalised, a cylinder emits as much however thin it is.
+    #[test]
+    fn lines_are_thin_cylinders_of_the_same_power() {
+        let (stage, light) = stage(
+            "metersPerUnit = 0.1",
+            r#"def CylinderLight "Thick" { float inputs:length = 20; float inputs:radius = 2; bool inputs:normalize = 1 }
+            def CylinderLight "Line" (references = </Thick>) { float inputs:radius = 0; bool treatAsLine = 1 }
+            def CylinderLight "Hint" (references = </Thick>) { bool treatAsLine = 1 }"#,
+        );
+        let cylinder = |path: &str| match light(&stage, path).kind {
+            LightKind::Cylinder { radius, length, radiance } => (radius, length * radius * radiance[0]),
+            kind => panic!("{kind:?}"),
+        };
+        let [thick, line, hint] = ["/Thick", "/Line", "/Hint"].map(cylinder);
+        near(line.0, 0.002);
+        near(line.1, thick.1);
+        assert_eq!(hint, thick);
     }
 
     #[test]

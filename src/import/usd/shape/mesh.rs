@@ -9,6 +9,7 @@ use openusd_schemas::geom::{Interpolation, Primvar};
 
 use super::super::skel::{Bound, Deformer};
 use super::super::stage::Reading;
+use super::super::values::pick;
 use super::finish::{Channels, Surface};
 use super::polygons::{Authored, mend_points};
 use super::primvar::{self, Counts, Primvars};
@@ -144,7 +145,8 @@ pub(super) fn points(reading: &Reading<'_>, prim: &Prim, skin: Option<&Bound>) -
 }
 
 pub(super) fn is_left_handed(reading: &Reading<'_>, prim: &Prim) -> bool {
-    reading.value::<Token>(prim, "orientation").is_some_and(|orientation| orientation == "leftHanded")
+    let token = reading.value::<Token>(prim, "orientation");
+    pick(reading, prim, "orientation", token, &[("rightHanded", false), ("leftHanded", true)])
 }
 
 impl Mesh {

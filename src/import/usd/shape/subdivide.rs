@@ -5,6 +5,7 @@ use openusd::usd::Prim;
 use openusd_schemas::geom::Interpolation;
 
 use super::super::stage::Reading;
+use super::super::values::pick;
 use super::finish::{Channels, Surface};
 use super::polygons::Polygons;
 use super::primvar::Channel;
@@ -33,14 +34,6 @@ pub(super) struct Rules {
 /// The rules of the mesh `prim`; `None` for scheme `none`.
 pub(super) fn read(reading: &Reading<'_>, prim: &Prim) -> Option<Rules> {
     let token = |name: &str| reading.value::<Token>(prim, name);
-    /// The first of `names` that `token` is; otherwise the fallback, with a warning.
-    fn pick<T: Copy>(reading: &Reading<'_>, prim: &Prim, name: &str, token: Option<Token>, choices: &[(&str, T)]) -> T {
-        let found = token.as_ref().and_then(|token| choices.iter().find(|(choice, _)| token == choice));
-        if let (None, Some(token)) = (found, &token) {
-            reading.warn(prim.path(), format!("there is no {name} \"{token}\"; {} is used", choices[0].0));
-        }
-        found.unwrap_or(&choices[0]).1
-    }
     let schemes = [
         ("catmullClark", Some(Scheme::CatmullClark)),
         ("loop", Some(Scheme::Loop)),
@@ -50,6 +43,8 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim) -> Option<Rules> {
     let scheme = pick(reading, prim, "subdivisionScheme", token("subdivisionScheme"), &schemes)?;
     let boundaries =
         [("edgeAndCorner", Boundary::EdgeAndCorner), ("edgeOnly", Boundary::EdgeOnly), ("none", Boundary::None)];
+    let triangles = [("catmullClark", false), ("smooth", true)];
+    let rule = "triangleSubdivisionRule";
     let name = "faceVaryingLinearInterpolation";
     let options = [
         ("cornersPlus1", FaceVarying::CornersPlus1),
@@ -63,7 +58,7 @@ pub(super) fn read(reading: &Reading<'_>, prim: &Prim) -> Option<Rules> {
         scheme,
         boundary: pick(reading, prim, "interpolateBoundary", token("interpolateBoundary"), &boundaries),
         face_varying: pick(reading, prim, name, token(name), &options),
-        smooth_triangles: token("triangleSubdivisionRule").is_some_and(|rule| rule == "smooth"),
+        smooth_triangles: pick(reading, prim, rule, token(rule), &triangles),
         crease_indices: reading.value(prim, "creaseIndices").unwrap_or_default(),
         crease_lengths: reading.value(prim, "creaseLengths").unwrap_or_default(),
         crease_sharpnesses: reading.value(prim, "creaseSharpnesses").unwrap_or_default(),
