@@ -54,10 +54,14 @@ def room(floor=None):
                            (bpy.ops.mesh.primitive_cube_add, {"size": 1, "location": (0, 0, 0.51)})):
         create(**values)
         bpy.context.object.data.materials.append(plain)
-    data = bpy.data.cameras.new("Camera")
-    camera = add("Camera", data, location=(0, -6, 4), rotation_euler=(math.radians(57), 0, 0))
-    bpy.context.scene.camera = camera
+    camera = _looking_down()
     world(0.0)
+    return camera
+
+
+def _looking_down():
+    camera = add("Camera", bpy.data.cameras.new("Camera"), location=(0, -6, 4), rotation_euler=(math.radians(57), 0, 0))
+    bpy.context.scene.camera = camera
     return camera
 
 
@@ -530,7 +534,7 @@ def cloth():
 
 def glowing_lacquer():
     """Emission below a rough, tinted coat."""
-    lit_room(material("Lacquer", Base_Color=(0.0, 0.0, 0.0, 1.0), Coat_Weight=1.0, Coat_Roughness=0.5,
+    lit_room(material("Lacquer", Base_Color=(0.0, 0.0, 0.0, 1.0), Coat_Weight=1.0, Coat_Roughness=0.2,
                       Coat_Tint=(0.9, 0.7, 0.5, 1.0), Emission_Color=(0.3, 0.6, 0.9, 1.0), Emission_Strength=0.6))
 
 
@@ -733,6 +737,7 @@ def bumpy_mirror():
     bpy.ops.object.shade_smooth()
     bpy.context.object.data.materials.append(
         _waves(material("Mirror", Base_Color=(1.0, 1.0, 1.0, 1.0), Metallic=1.0, Roughness=0.0), 0.05, 3.0))
+    _looking_down()
     world(1.0)
 
 
@@ -744,6 +749,7 @@ def bumpy_shine():
         bpy.ops.object.shade_smooth()
         bpy.context.object.data.materials.append(
             _waves(material("Shine", Base_Color=(0.8, 0.7, 0.6, 1.0), **inputs), 0.03, 3.0))
+    _looking_down()
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
     world(0.5)
 

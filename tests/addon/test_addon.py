@@ -53,7 +53,7 @@ def test_f12_fills_every_pass(blender, tmp_path):
              "glowing_velvet", "mixed_shaders",
              "leaf", "red_film", "glow", "filter_glossy", "no_caustics",
              "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
-             "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy", "bumpy_shine",
+             "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
              "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
              "relief", "relief_of_world", "relief_of_vectors", "relief_of_tangents", "relief_of_color", "colors_as_shaders",
              "bright_colors", "light_taken", "gobo_point", "gobo_of_directions", "gobo_spot", "gobo_of_normals", "gobo_area",
@@ -90,6 +90,14 @@ def test_bumps_on_mirrors_leave_no_black(blender, tmp_path):
     paths, _ = blender.run("side_by_side", "bumpy_mirror", tmp_path, 64, 16)
     for path in paths:
         assert min(read(path)[f"ViewLayer.Combined.{c}"].min() for c in "RGB") > 0.99
+
+
+def test_bumps_shine_as_in_cycles(blender, tmp_path):
+    """In sum: where a steep bump turns away from the viewer Cycles leaves diffuse light as it is (docs/blender.md)."""
+    paths, _ = blender.run("side_by_side", "bumpy_shine", tmp_path, 64, 48)
+    expected, found = (np.dstack([read(path)[f"ViewLayer.Combined.{c}"] for c in "RGB"]) for path in paths)
+    noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
+    assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise
 
 
 def test_the_sky_of_hosek_and_wilkie_is_that_of_cycles_by_another_fit(blender, tmp_path):
