@@ -156,7 +156,6 @@ def rows():
         row("Diffuse Roughness", _STEPS),
         row("Subsurface Weight", _STEPS, Subsurface_Scale=0.2),
         row("Subsurface Anisotropy", (0.0, 0.2, 0.4, 0.6, 0.8), Subsurface_Weight=1.0, Subsurface_Scale=0.2),
-        row("Subsurface IOR", (1.01, 1.2, 1.4, 1.8, 2.5), Subsurface_Weight=1.0, Subsurface_Scale=0.2),
         row("Subsurface Scale", (0.01, 0.05, 0.2, 0.5, 1.0), Subsurface_Weight=1.0),
         row("Transmission Weight", _STEPS),
         rename("Roughness of glass", row("Roughness", _STEPS, Transmission_Weight=1.0, Base_Color=gray(0.8))),
