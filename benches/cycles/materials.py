@@ -211,6 +211,8 @@ KNOWN = [
     "ball of rough glass is therefore darker in Cycles the more often light bounces within.",
     "- An opaque surface of an index below 1: Cycles reflects all beyond the critical angle and adds the light from below, "
     "more than there is; Penumbra takes the reciprocal index.",
+    "- Open: balls of tinted rough glass of the Principled BSDF at roughness 1 (the node Glass BSDF agrees), and subsurface "
+    "radii far below a pixel (scale 0.01 and 0.05, mostly blue).",
 ]
 """What the page says of what is in bold."""
 
