@@ -161,7 +161,8 @@ fn film_keeps(film: &Film, bare: &Dielectric, ggx: Ggx, wo: Vec3) -> Rgb {
 fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter: bool, wo: Vec3) -> (Rgb, Sides) {
     let cos = wo.z.min(1.0);
     let fresnel = &boundary.fresnel;
-    let energy = ggx.map(|ggx| RoughnessPlace::of(ggx.mean()).at(cos));
+    let place = ggx.map(|ggx| RoughnessPlace::of(ggx.mean()));
+    let energy = place.map(|place| place.at(cos));
     let plain = plain_at(energy, cos);
     let averages = match energy {
         Some(energy) => energy.refractive(EtaPlace::of(fresnel.eta)),
@@ -182,7 +183,8 @@ fn energy(ggx: Option<Ggx>, boundary: &Boundary, passage: Passage, multiscatter:
         sum = (sum + film_keeps(film, fresnel, ggx, wo)).map(|kept| kept.clamp(LEAST_SHARE, 1.0));
     }
     let [reflection, transmission] = boundary.tints;
-    let factor = match ggx.map(|ggx| RoughnessPlace::of(ggx.mean())) {
+    let factor = match place {
+        Some(_) if multiscatter && transmission == Rgb::WHITE => sum.map(|sum| 1.0 / sum),
         Some(place) if multiscatter => {
             let average = match passage {
                 Passage::RoughBent => place.glass_average(EtaPlace::of(fresnel.eta)),

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::camera::Camera;
-use crate::desc::graph::{Function, Layer, Leaf, PathInfo, Quantity, Space, Value};
+use crate::desc::graph::{Function, Leaf, PathInfo, Quantity, Space, Value};
 use crate::math::{DAffine3, DVec2, DVec3, Rgb};
-use crate::texture::graph::{Beside, Hit, Program};
+use crate::texture::graph::{Beside, Hit, Program, of_no_object};
 use crate::texture::{Texture, TextureRef};
 
 /// What a lamp's parametric coordinates are spread over.
@@ -113,11 +113,6 @@ fn vector(v: DVec3) -> Value {
 }
 
 impl Hit for From<'_> {
-    // Nothing lies over a lamp.
-    fn albedo(&self, _: Layer, _: f64, _: f64, _: Value) -> f64 {
-        0.0
-    }
-
     fn leaf(&self, leaf: &Leaf, _: Beside) -> Value {
         let lamp = self.lamp;
         match leaf {
@@ -142,18 +137,7 @@ impl Hit for From<'_> {
             }
             Leaf::ObjectLocation => vector(lamp.to_world.translation),
             Leaf::Path(PathInfo::Length) => [self.dist; 4],
-            // What meshes and objects have.
-            Leaf::Uv(_) => [0.0, 0.0, 0.0, 1.0],
-            Leaf::Attribute { fallback, .. } => *fallback,
-            Leaf::VertexColor | Leaf::ObjectColor => [1.0; 4],
-            Leaf::Generated
-            | Leaf::RadialTangent
-            | Leaf::Backfacing
-            | Leaf::Tangent
-            | Leaf::ObjectIndex
-            | Leaf::ObjectRandom
-            | Leaf::MaterialIndex
-            | Leaf::Path(_) => [0.0; 4],
+            leaf => of_no_object(leaf),
         }
     }
 

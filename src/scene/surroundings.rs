@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::camera::Camera;
-use crate::desc::graph::{Layer, Leaf, Quantity, Space, Value};
+use crate::desc::graph::{Leaf, Quantity, Space, Value};
 use crate::math::{DVec3, Rgb, Vec3};
-use crate::texture::graph::{Beside, Hit, Program};
+use crate::texture::graph::{Beside, Hit, Program, of_no_object};
 use crate::texture::{Texture, TextureRef};
 
 /// A graph of a dome or of the background, and what it goes by.
@@ -53,11 +53,6 @@ fn vector(v: DVec3) -> Value {
 }
 
 impl Hit for Towards<'_> {
-    // Nothing lies over a world.
-    fn albedo(&self, _: Layer, _: f64, _: f64, _: Value) -> f64 {
-        0.0
-    }
-
     fn leaf(&self, leaf: &Leaf, _: Beside) -> Value {
         match leaf {
             Leaf::Position | Leaf::ObjectPosition | Leaf::Generated => vector(self.direction),
@@ -70,19 +65,7 @@ impl Hit for Towards<'_> {
                 let [x, y] = camera.window(camera.view().origin + self.direction.as_vec3());
                 [f64::from(x), f64::from(y), 0.0, 0.0]
             }
-            // What meshes and objects have.
-            Leaf::Uv(_) => [0.0, 0.0, 0.0, 1.0],
-            Leaf::Attribute { fallback, .. } => *fallback,
-            Leaf::VertexColor | Leaf::ObjectColor => [1.0; 4],
-            Leaf::RadialTangent
-            | Leaf::Parametric
-            | Leaf::Backfacing
-            | Leaf::Tangent
-            | Leaf::ObjectLocation
-            | Leaf::ObjectIndex
-            | Leaf::ObjectRandom
-            | Leaf::MaterialIndex
-            | Leaf::Path(_) => [0.0; 4],
+            leaf => of_no_object(leaf),
         }
     }
 

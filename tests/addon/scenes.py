@@ -748,7 +748,7 @@ def bumpy_shine():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=128, ring_count=64, radius=0.8, location=(1.8 * i - 1.8, 0.0, 0.8))
         bpy.ops.object.shade_smooth()
         bpy.context.object.data.materials.append(
-            _waves(material("Shine", Base_Color=(0.8, 0.7, 0.6, 1.0), **inputs), 0.03, 3.0))
+            _waves(material("Shine", Base_Color=(0.8, 0.7, 0.6, 1.0), **inputs), 0.09, 1.0))
     _looking_down()
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
     world(0.5)

@@ -94,8 +94,6 @@ def test_bumps_on_mirrors_leave_no_black(blender, tmp_path):
 
 def test_bumps_shine_as_in_cycles(blender, tmp_path):
     """In sum: where a steep bump turns away from the viewer Cycles leaves diffuse light as it is (docs/blender.md)."""
-    if blender.version == "4.2":
-        pytest.skip("Cycles 4.2 has less diffuse light on steep bumps below a reflection (docs/blender.md)")
     paths, _ = blender.run("side_by_side", "bumpy_shine", tmp_path, 64, 48)
     expected, found = (np.dstack([read(path)[f"ViewLayer.Combined.{c}"] for c in "RGB"]) for path in paths)
     noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)

@@ -27,10 +27,23 @@ pub trait Hit {
 
     /// What a layer throws back towards whoever looks, of white light that comes from everywhere; see
     /// [`crate::desc::graph::Op::Albedo`]. `normal` is in world space.
-    fn albedo(&self, layer: Layer, roughness: f64, ior: f64, normal: Value) -> f64;
+    /// Nothing lies over a lamp or a world.
+    fn albedo(&self, _layer: Layer, _roughness: f64, _ior: f64, _normal: Value) -> f64 {
+        0.0
+    }
 
     /// The two directions of [`Beside`], as long as the footprint is wide, world space.
     fn footprint(&self) -> [Value; 2];
+}
+
+/// What lamps and worlds answer to what only meshes and objects have.
+pub fn of_no_object(leaf: &Leaf) -> Value {
+    match leaf {
+        Leaf::Uv(_) => [0.0, 0.0, 0.0, 1.0],
+        Leaf::Attribute { fallback, .. } => *fallback,
+        Leaf::VertexColor | Leaf::ObjectColor => [1.0; 4],
+        _ => [0.0; 4],
+    }
 }
 
 /// Whether what is known at a hit is another thing beside it.

@@ -27,6 +27,6 @@ mod steps;
 mod tests;
 
 pub use compile::{Compiler, Resolve, Resolved};
-pub use hit::{Beside, HERE, Hit};
+pub use hit::{Beside, HERE, Hit, of_no_object};
 pub use program::{Asks, Program};
 pub use sky::{Sky, sun_disk};
