@@ -14,8 +14,9 @@
 //! - [`scene`]: all of them together, made by [`scene::prepare`];
 //! - [`settings`]: the table of everything that can be set; [`film`]: the table of passes and the sums
 //!   behind them;
-//! - [`integrator`]: one sample of one pixel; [`render`]: all of them; [`output`]: files; [`job`]: what
-//!   the front doors share of these.
+//! - [`integrator`]: one sample of one pixel; [`render`]: all of them; [`job`]: what the front doors share;
+//! - [`compare`]: two pictures of one scene; [`converge`]: one scene in many ways, error against seconds;
+//!   [`denoise`]: a denoiser that may be there; [`output`]: files and reports.
 //!
 //! ```no_run
 //! use penumbra::{error::Warnings, import, output, render, scene, settings::Settings};
@@ -32,6 +33,9 @@
 pub mod bsdf;
 pub mod bvh;
 pub mod camera;
+pub mod compare;
+pub mod converge;
+pub mod denoise;
 pub mod desc;
 pub mod error;
 pub mod film;

@@ -1,7 +1,10 @@
 //! The command line: parse, load, render, write, exit code. One file for each command.
 
+mod compare;
+mod converge;
 mod environment;
 mod files;
+mod given;
 mod info;
 mod progress;
 mod render;
@@ -29,6 +32,8 @@ pub fn run() -> ExitCode {
     let outcome = match matches.subcommand() {
         Some(("render", args)) => render::run(args),
         Some(("info", args)) => info::run(args),
+        Some(("compare", args)) => compare::run(args),
+        Some(("converge", args)) => converge::run(args),
         _ => unreachable!("clap requires one of the commands"),
     };
     match outcome {
@@ -52,6 +57,8 @@ fn command() -> Command {
         .arg_required_else_help(true)
         .subcommand(render::command())
         .subcommand(info::command())
+        .subcommand(compare::command())
+        .subcommand(converge::command())
 }
 
 /// The arguments by which every command reads a scene.

@@ -12,12 +12,12 @@ use penumbra::job;
 use penumbra::output::{exr, png};
 use penumbra::render::Rendered;
 use penumbra::scene::{Cache, Prepared, prepare_with};
-use penumbra::settings::{SETTINGS, Settings};
+use penumbra::settings::Settings;
 
 use super::files::{Files, save};
 use super::progress::{Reporter, catch_interrupts, clock, interrupted, rendering};
 use super::shots::{self, Shot};
-use super::{Outcome, environment, say, scene};
+use super::{Outcome, environment, given, say, scene};
 
 pub fn command() -> Command {
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
@@ -31,25 +31,7 @@ pub fn command() -> Command {
                 .help("The EXR file to write; needed unless a USD stage names one"),
         )
         .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
-        .arg(
-            Arg::new("camera")
-                .long("camera")
-                .value_name("NAME|PATH")
-                .help("Camera to look through; that of the file's own render settings or the first unless set"),
-        )
-        .arg(
-            Arg::new("size").long("size").value_name("WxH").value_parser(parse_size).help(
-                "Size of the picture in pixels; that of the file's own render settings, or 960 across, unless set",
-            ),
-        )
-        .arg(
-            Arg::new("frame")
-                .long("frame")
-                .value_name("F")
-                .value_parser(scene::parse_frame)
-                .allow_negative_numbers(true)
-                .help("Frame (USD: time code; glTF: 24 per second); USD's first, or glTF's pose at rest, unless set"),
-        )
+        .args(given::view_args())
         .arg(
             Arg::new("frames")
                 .long("frames")
@@ -76,16 +58,11 @@ pub fn command() -> Command {
                 .value_parser(parse_sample)
                 .help("Trace sample I of pixel (X, Y) alone and print what it gave; writes nothing"),
         );
-    SETTINGS.iter().fold(command, |command, def| {
-        let flag = def.name.replace('_', "-");
-        let default = if def.default.is_empty() { String::new() } else { format!(" [default: {}]", def.default) };
-        let arg = Arg::new(def.name).long(flag).value_name(def.value_name).help(format!("{}{default}", def.help));
-        command.arg(arg.allow_negative_numbers(true))
-    })
+    command.args(given::setting_args())
 }
 
 pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
-    let settings = settings(args);
+    let settings = given::settings(args, command);
     let is_usd = scene::path(args).extension().is_some_and(|e| e.to_string_lossy().to_lowercase().starts_with("usd"));
     if !args.contains_id("output") && !args.contains_id("debug-sample") && !is_usd {
         let kind = clap::error::ErrorKind::MissingRequiredArgument;
@@ -110,24 +87,6 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
-}
-
-/// The settings that were typed; a mistake ends the program as clap's own do.
-fn settings(args: &ArgMatches) -> Settings {
-    let mut settings = Settings::default();
-    for def in SETTINGS {
-        if let Some(text) = args.get_one::<String>(def.name)
-            && let Err(what) = def.set(&mut settings, text)
-        {
-            let flag = def.name.replace('_', "-");
-            let message = format!("invalid value '{text}' for '--{flag} <{}>': {what}", def.value_name);
-            command().bin_name("penumbra render").error(clap::error::ErrorKind::ValueValidation, message).exit();
-        }
-    }
-    if args.value_source("spp") != Some(ValueSource::CommandLine) {
-        settings.without_spp();
-    }
-    settings
 }
 
 fn render_frame(
@@ -342,14 +301,6 @@ fn parse_frames(text: &str) -> Result<Frames, String> {
     Ok(frames)
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as 960x540")?;
-    match (width.parse(), height.parse()) {
-        (Ok(width), Ok(height)) if width > 0 && height > 0 => Ok([width, height]),
-        _ => Err("expected WIDTHxHEIGHT of at least 1x1, as 960x540".into()),
-    }
-}
-
 fn parse_sample(text: &str) -> Result<[u64; 3], String> {
     let parts: Result<Vec<u64>, _> = text.split(',').map(str::parse).collect();
     parts.ok().and_then(|parts| parts.try_into().ok()).ok_or_else(|| "expected X,Y,I, as 12,34,0".into())
@@ -360,12 +311,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_and_sizes_are_checked() {
+    fn ranges_are_checked() {
         assert_eq!(parse_frames("1-7x3").unwrap().iter().collect::<Vec<_>>(), [1.0, 4.0, 7.0]);
         assert_eq!(parse_frames("5").unwrap().iter().count(), 1);
         assert_eq!(parse_frames("-5--3").unwrap().iter().collect::<Vec<_>>(), [-5.0, -4.0, -3.0]);
         assert!(parse_frames("7-1").is_err() && parse_frames("1-3x0").is_err());
-        assert_eq!(parse_size("960x540"), Ok([960, 540]));
-        assert!(parse_size("0x540").is_err() && parse_size("960").is_err());
     }
 }

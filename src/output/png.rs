@@ -3,7 +3,7 @@
 //! Display value = OETF of IEC 61966-2-1, `1.055 x^(1/2.4) - 0.055`, linear below 0.0031308; clipped to
 //! 0 to 1. Alpha is straight, as PNG has it.
 
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
@@ -23,16 +23,20 @@ pub fn write(path: &Path, picture: &Picture, layer: &str) -> Result<()> {
     let Some(layer) = picture.layer(layer) else {
         return Err(Error::invalid(&Place::file(path), format!("the picture has no layer '{layer}' to preview")));
     };
-    let (bytes, color) = encode(layer);
-    file::replace(path, |file| {
-        let mut buffer = BufWriter::new(file);
-        let written = PngEncoder::new(&mut buffer).write_image(&bytes, picture.width, picture.height, color);
-        written.map_err(|error| match error {
-            image::ImageError::IoError(error) => error,
-            other => io::Error::other(other.to_string()),
-        })?;
-        buffer.flush()
-    })
+    let bytes = bytes(layer, picture.width, picture.height)?;
+    file::replace(path, |mut file| file.write_all(&bytes))
+}
+
+/// The same in memory.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a picture that is too large for the format.
+pub fn bytes(layer: &Layer, width: u32, height: u32) -> Result<Vec<u8>> {
+    let (pixels, color) = encode(layer);
+    let mut bytes = Vec::new();
+    let written = PngEncoder::new(&mut bytes).write_image(&pixels, width, height, color);
+    written.map_err(|error| Error::unsupported(&Place::default(), format!("PNG: {error}")))?;
+    Ok(bytes)
 }
 
 fn encode(layer: &Layer) -> (Vec<u8>, ExtendedColorType) {

@@ -1,0 +1,41 @@
+"""Renders of a stage through every door, and what `penumbra compare` says of each."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+FILES = {"usd": "scene.usdc", "gltf": "scene.glb"}
+DOORS = ("blender", *FILES)
+# Passes of Penumbra that Cycles has too, as the command line calls them.
+PASSES = ("combined,depth,position,normal,uv,diffuse_direct,diffuse_indirect,diffuse_color,glossy_direct,glossy_indirect,"
+          "glossy_color,transmission_direct,transmission_indirect,transmission_color,emission,environment,ao,shadow,unshadowed,"
+          "crypto_object,crypto_material")
+
+
+def engines(stage, folder, wheel, size, samples, only, python=sys.executable):
+    """Blender's part, in a process of its own."""
+    command = [python, HERE / "engines.py", stage, folder, "--wheel", wheel, "--size", f"{size[0]}x{size[1]}", "--samples", samples,
+               "--only", only]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+
+
+def render(program, folder, door, facts, size, samples):
+    """Two pictures of an exported file, by the command line."""
+    for seed in (1, 2):
+        command = [program, "render", folder / FILES[door], "-o", folder / f"{door}-{seed}.exr", "--spp", samples, "--seed", seed,
+                   "--max-bounces", facts["bounces"], "--filter", "box:0.5", "--size", f"{size[0]}x{size[1]}", "--passes", PASSES,
+                   "--ao-distance", facts["ao_distance"], "--progress", "none"]
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def compare(program, reference, folder, door, *options):
+    """The verdict on each pass; `reference` is a folder with cycles-1.exr and cycles-2.exr."""
+    files = [reference / "cycles-1.exr", folder / f"{door}-1.exr"]
+    command = [program, "compare", *files, "--more-a", reference / "cycles-2.exr", "--more-b", folder / f"{door}-2.exr", "--json", *options]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)["passes"]

@@ -1,0 +1,100 @@
+"""Every pass of every stage, through every door, held against Cycles by `penumbra compare`.
+
+Cycles' pictures stand in references/ (`validate.py --references` makes them); a few of them, other ones every day,
+are rendered anew to see whether they are still what Cycles gives.
+"""
+
+import datetime
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("OpenImageIO")
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(HERE))
+import doors  # noqa: E402
+
+REFERENCES = HERE / "references"
+FACTS = json.loads((REFERENCES / "facts.json").read_text())
+PROGRAM = ROOT / os.environ.get("PENUMBRA", "target/debug/penumbra")
+SIZE = FACTS["size"]
+SAMPLES = 64
+AMONG = 20 * len(doors.DOORS) * len(FACTS["stages"])
+"""Passes that are judged in all."""
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory):
+    if named := os.environ.get("PENUMBRA_WHEEL"):
+        return (ROOT / named).resolve()
+    sys.path.insert(0, str(ROOT / "addon"))
+    from build import build_wheel
+
+    return build_wheel(tmp_path_factory.mktemp("wheel"), "dev")
+
+
+def differing(passes, facts, door):
+    """Sentences on the passes that differ, but for those that are known to."""
+    known = facts["passes"].get(door, {})
+    return [f"{door} {it['pass']}: {it['why']}" for it in passes if it["verdict"] == "differs" and it["pass"] not in known]
+
+
+@pytest.mark.parametrize("stage", FACTS["stages"])
+def test_passes_are_those_of_cycles(stage, tmp_path, wheel):
+    facts = FACTS["stages"][stage]
+    doors.engines(stage, tmp_path, wheel, SIZE, SAMPLES, "penumbra,files")
+    wrong, judged = [], {}
+    for door in doors.DOORS:
+        if door in facts["doors"]:
+            continue
+        if door != "blender":
+            doors.render(PROGRAM, tmp_path, door, facts, SIZE, SAMPLES)
+        passes = doors.compare(PROGRAM, REFERENCES / stage, tmp_path, door, "--no-flip", "--among", AMONG)
+        judged[door] = {it["pass"] for it in passes}
+        wrong += differing(passes, facts, door)
+        assert all(it["not_finite"] == {"a": 0, "b": 0} for it in passes)
+    assert not wrong, "\n".join(wrong)
+    assert {"Combined", "Ambient Occlusion", "Diffuse Direct", "Depth"} <= judged["blender"]
+    assert ("Shadow" in judged["blender"]) == facts["lamps_alone"]
+
+
+def of_today():
+    """Four stages, others every day."""
+    names = list(FACTS["stages"])
+    first = 4 * datetime.date.today().toordinal()
+    return [names[(first + i) % len(names)] for i in range(4)]
+
+
+@pytest.mark.parametrize("stage", of_today())
+def test_references_are_what_cycles_gives(stage, tmp_path, wheel):
+    doors.engines(stage, tmp_path, wheel, SIZE, SAMPLES, "cycles")
+    passes = doors.compare(PROGRAM, REFERENCES / stage, tmp_path, "cycles", "--no-flip", "--among", AMONG)
+    assert not [it["why"] for it in passes if it["verdict"] == "differs"]
+    assert len(passes) > 15
+
+
+def test_a_bias_of_five_percent_is_found(tmp_path, wheel):
+    """The judge can say no: a lamp of 5 % more power."""
+    doors.engines("area_square", tmp_path, wheel, SIZE, SAMPLES, "files")
+    scene = tmp_path / doors.FILES["usd"]
+    brighter = tmp_path / "brighter.py"
+    brighter.write_text(
+        "import sys\nfrom pxr import Usd, UsdLux\nstage = Usd.Stage.Open(sys.argv[1])\n"
+        "for prim in stage.Traverse():\n"
+        "    if light := UsdLux.LightAPI(prim):\n"
+        "        light.GetIntensityAttr().Set(1.05 * light.GetIntensityAttr().Get(1.0))\n"
+        "stage.Save()\n"
+    )
+    done = subprocess.run([sys.executable, brighter, scene], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    facts = FACTS["stages"]["area_square"]
+    doors.render(PROGRAM, tmp_path, "usd", facts, SIZE, SAMPLES)
+    passes = doors.compare(PROGRAM, REFERENCES / "area_square", tmp_path, "usd", "--no-flip", "--among", AMONG)
+    verdicts = {it["pass"]: it["verdict"] for it in passes}
+    assert verdicts["Combined"] == verdicts["Diffuse Direct"] == "differs"
+    assert verdicts["Ambient Occlusion"] != "differs" and verdicts["Shadow"] != "differs"

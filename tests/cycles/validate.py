@@ -1,0 +1,122 @@
+"""Penumbra beside Cycles, every stage, pass and door: renders all, judges, writes the pages.
+
+    tests/run                                               # once: the Python environment with bpy 5.0.1
+    cargo build --release --ignore-rust-version
+    target/test-venv/bin/python tests/cycles/validate.py    # builds the add-on; see docs/validation for how long it takes
+
+writes target/validation/index.html, a list of pages in which A is Cycles and B Penumbra, and docs/validation/cycles.md.
+`--stages A,B` takes some and leaves docs/ alone, `--size`, `--samples` say how well, `--wheel FILE` takes a wheel that is
+built already. `--references` renders Cycles' pictures for the tests instead. Exits with 1 where a pass differs that is
+not known to.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path[:0] = [str(HERE), str(ROOT / "addon")]
+
+import doors
+import report
+
+OUT = ROOT / "target" / "validation"
+REFERENCES = HERE / "references"
+REFERENCE_SIZE, REFERENCE_SAMPLES = (64, 48), 1024
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--stages", help="names separated by commas; all unless set")
+    parser.add_argument("--size", default="128x96")
+    parser.add_argument("--samples", type=int, default=512)
+    parser.add_argument("--wheel", type=Path)
+    parser.add_argument("--program", type=Path, default=ROOT / "target/release/penumbra")
+    parser.add_argument("--references", action="store_true", help="render Cycles' pictures for the tests")
+    parser.add_argument("--again", action="store_true", help="judge what is rendered already")
+    return parser.parse_args()
+
+
+def all_facts():
+    """What stages.py says, which only Blender's Python can read."""
+    code = (
+        "import sys, json; sys.path.insert(0, sys.argv[1]); import bpy, stages\n"
+        "facts = {}\n"
+        "for name, it in stages.STAGES.items():\n"
+        "    bpy.ops.wm.read_factory_settings(use_empty=True)\n"
+        "    it.build()\n"
+        "    distance = bpy.context.scene.world.light_settings.distance\n"
+        "    passes = {door: {**stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
+        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance)\n"
+        "print('FACTS' + json.dumps(facts))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, HERE], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(next(line for line in done.stdout.splitlines() if line.startswith("FACTS"))[5:])
+
+
+def make_references(names, facts, wheel):
+    import engines
+
+    for name in names:
+        folder = OUT / "references" / name
+        doors.engines(name, folder, wheel, REFERENCE_SIZE, REFERENCE_SAMPLES, "cycles")
+        (REFERENCES / name).mkdir(parents=True, exist_ok=True)
+        for seed in (1, 2):
+            found = engines.parts(folder / f"cycles-{seed}.exr")
+            found = {part: it for part, it in found.items() if "Noisy" not in part and "Debug" not in part}
+            # Ids are bits, and distances reach beyond half floats.
+            exact = {part for part in found if any(word in part for word in ("Crypto", "Depth", "Index", "Position"))}
+            engines.save(REFERENCES / name / f"cycles-{seed}.exr", found, half=set(found) - exact)
+        print(name, flush=True)
+    (REFERENCES / "facts.json").write_text(json.dumps({"size": REFERENCE_SIZE, "samples": REFERENCE_SAMPLES, "stages": facts}, indent=1) + "\n")
+
+
+def judge(name, facts, options, wheel, among):
+    """Renders a stage through all doors; the passes of each, by door."""
+    folder, size = OUT / name, [int(n) for n in options.size.split("x")]
+    if not options.again:
+        doors.engines(name, folder, wheel, size, options.samples, "cycles,penumbra,files")
+    found = {}
+    for door in doors.DOORS:
+        if door in facts["doors"]:
+            continue
+        if door != "blender" and not options.again:
+            doors.render(options.program, folder, door, facts, size, options.samples)
+        found[door] = doors.compare(options.program, folder, folder, door, "--html", OUT / "pages" / f"{name}-{door}", "--among", among)
+        for it in found[door]:
+            if it["verdict"] == "differs":
+                it["known"] = facts["passes"][door].get(it["pass"])
+    return found
+
+
+def main():
+    options = arguments()
+    facts = all_facts()
+    names = options.stages.split(",") if options.stages else list(facts)
+    wheel = options.wheel
+    if wheel is None and not options.again:
+        from build import build_wheel
+
+        wheel = build_wheel(OUT / "wheel", "release")
+    if options.references:
+        return make_references(names, facts, wheel)
+    start, found, among = time.time(), {}, 20 * len(doors.DOORS) * len(names)
+    for name in names:
+        begun = time.time()
+        found[name] = judge(name, facts[name], options, wheel, among)
+        wrong = [f"{door} {it['pass']}" for door, passes in found[name].items() for it in passes if it["verdict"] == "differs" and not it["known"]]
+        print(f"{name}: {time.time() - begun:.0f} s; {'differs: ' + ', '.join(wrong) if wrong else 'agrees'}", flush=True)
+    report.index(OUT, found, facts)
+    if not options.stages:
+        report.document(ROOT / "docs" / "validation" / "cycles.md", OUT, found, facts, options, time.time() - start, os.cpu_count())
+    return any(it["verdict"] == "differs" and not it["known"] for doors_ in found.values() for passes in doors_.values() for it in passes)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
