@@ -8,7 +8,6 @@ use penumbra::compare::pass_of;
 use penumbra::converge::{Configuration, Kind, Measured, Reference, Task, configurations};
 use penumbra::denoise::Denoiser;
 use penumbra::desc::SceneDesc;
-use penumbra::error::Warnings;
 use penumbra::job;
 use penumbra::output::exr;
 use penumbra::output::report::converge::{self as report, Circumstances};

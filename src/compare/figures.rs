@@ -90,6 +90,8 @@ pub(super) struct Values<'a> {
     pub b: &'a [f32],
     /// Variance of the difference, or nothing.
     pub variance: Option<Vec<f32>>,
+    /// Degrees of freedom of one pixel's.
+    pub freedom: f64,
     /// Pixels that count.
     pub counts: Vec<bool>,
 }
@@ -123,7 +125,8 @@ impl Figures {
         });
         let counts = counts.collect();
         let colors = if is_rgba { 3 } else { n };
-        let values = Values { channels: n, colors, a: values_a, b: values_b, variance: sum_of_variances(a, b), counts };
+        let (variance, freedom) = (sum_of_variances(a, b), a.freedom + b.freedom);
+        let values = Values { channels: n, colors, a: values_a, b: values_b, variance, freedom, counts };
         let judgement = Judgement::of(name, &values, width, [a.noise, b.noise], background_of_one, options.among);
         let (flip, flip_map) = match flip_of(name, a, &values, width).filter(|_| options.flip) {
             Some(map) => (Some(flip::mean(&map)), map),

@@ -32,7 +32,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// What is compared: the means of both, or what Cryptomattes have in common.
+    /// What is compared: the means of both.
     pub fn values(&self) -> (&[f32], &[f32]) {
         (&self.a.mean, &self.b.mean)
     }
@@ -100,14 +100,13 @@ pub fn compare(a: Side, b: Side, options: &Options) -> Result<Comparison, SizesD
     let (width, height) = (a.width, a.height);
     let matched = names::matched(a.layers, b.layers, &options.passes);
     let (mut pairs, mut unlike) = (Vec::new(), Vec::new());
-    for (name, a, b) in matched.pairs {
+    for (name, mut a, mut b) in matched.pairs {
+        if !a.coverage.is_empty() && !b.coverage.is_empty() {
+            cryptomatte::spread(&mut a, &mut b);
+        }
         if a.channels != b.channels {
             unlike.push(format!("{name}: {} and {}", a.channels.concat(), b.channels.concat()));
             continue;
-        }
-        let mut b = b;
-        if let Some((of_a, of_b)) = a.coverage.as_ref().zip(b.coverage.as_ref()) {
-            b.mean = cryptomatte::agreement(of_a, of_b);
         }
         let figures = Figures::of(&name, &a, &b, width as usize, options);
         pairs.push(Pair { name, a, b, figures });

@@ -2,7 +2,7 @@
 
 use super::cryptomatte;
 use super::names::Names;
-use crate::film::{PASSES, Picture, Storage};
+use crate::film::{PASSES, Picture, REPLICATES, Storage};
 
 /// Where the noise of a layer is known from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +30,10 @@ pub struct Layer {
     pub noise: Noise,
     /// True for colors.
     pub is_color: bool,
-    /// The ids and coverages of a Cryptomatte pass, whose `mean` is the share of each pixel that has an id.
-    pub(super) coverage: Option<cryptomatte::Coverage>,
+    /// Degrees of freedom of the variance of one pixel's channel; 0 where it is not known.
+    pub freedom: f64,
+    /// Of a Cryptomatte pass the ids and coverages of each render, until both sides say which channels it has.
+    pub(super) coverage: Vec<cryptomatte::Coverage>,
 }
 
 /// A picture, or several of other seeds.
@@ -67,26 +69,39 @@ impl Side {
             others.push(other);
         }
         let errors = error_layers(&first);
-        let layers = first.layers.iter().map(|layer| {
-            let mut of_others = Vec::new();
-            for other in &others {
-                of_others.extend(other.layers.iter().find(|b| b.name == layer.name).map(|b| &b.data[..]));
+        let (width, height) = (first.width, first.height);
+        let mut layers = of_render(first);
+        let others: Vec<Vec<Layer>> = others.into_iter().map(of_render).collect();
+        for layer in &mut layers {
+            let same = |other: &&Layer| other.names == layer.names;
+            let others: Vec<&Layer> = others.iter().filter_map(|layers| layers.iter().find(same)).collect();
+            if !others.is_empty() {
+                layer.coverage.extend(others.iter().flat_map(|other| other.coverage.clone()));
+                let values: Vec<&[f32]> = others.iter().map(|other| &other.mean[..]).collect();
+                (layer.mean, layer.variance) = mean_and_variance(&layer.mean, &values);
+                (layer.noise, layer.freedom) = (Noise::Seeds, others.len() as f64);
+            } else if let Some((_, error)) = errors.iter().find(|(of, _)| *of == layer.names) {
+                layer.variance = spread(error, layer.channels.len());
+                (layer.noise, layer.freedom) = (Noise::ErrorPass, REPLICATES as f64 - 1.0);
             }
-            let names = Names::of(&layer.name);
-            let (mean, mut variance) = mean_and_variance(&layer.data, &of_others);
-            let mut noise = if of_others.is_empty() { Noise::Unknown } else { Noise::Seeds };
-            if noise == Noise::Unknown
-                && let Some((_, error)) = errors.iter().find(|(of, _)| *of == names)
-            {
-                variance = spread(error, layer.channels.len());
-                noise = Noise::ErrorPass;
-            }
-            let is_color = layer.storage == Storage::Color;
-            Layer { names, channels: layer.channels.clone(), mean, variance, noise, is_color, coverage: None }
-        });
-        let layers = cryptomatte::joined(layers.collect());
-        Ok(Self { width: first.width, height: first.height, layers })
+        }
+        Ok(Self { width, height, layers })
     }
+}
+
+/// The layers of one render.
+fn of_render(picture: Picture) -> Vec<Layer> {
+    let of = |layer: crate::film::Layer| Layer {
+        names: Names::of(&layer.name),
+        channels: layer.channels,
+        mean: layer.data,
+        variance: Vec::new(),
+        noise: Noise::Unknown,
+        is_color: layer.storage == Storage::Color,
+        freedom: 0.0,
+        coverage: Vec::new(),
+    };
+    cryptomatte::joined(picture.layers.into_iter().map(of).collect())
 }
 
 /// The picture with its error passes and channels of no layer told apart: bare R, G, B, A are Combined, Z is Depth.
@@ -131,7 +146,7 @@ fn spread(error: &[f32], n: usize) -> Vec<f32> {
 }
 
 /// Of the mean of `first` and `others`; the variance is empty where there are no others.
-fn mean_and_variance(first: &[f32], others: &[&[f32]]) -> (Vec<f32>, Vec<f32>) {
+pub(super) fn mean_and_variance(first: &[f32], others: &[&[f32]]) -> (Vec<f32>, Vec<f32>) {
     if others.is_empty() {
         return (first.to_vec(), Vec::new());
     }

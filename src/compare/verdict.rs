@@ -76,12 +76,52 @@ pub(super) fn is_of_the_render(name: &str) -> bool {
     OF_THE_RENDER.contains(&pass) || PASSES.iter().any(|row| row.is_error() && row.layer == pass)
 }
 
-/// Mean and its variance of one block's channel.
+/// Mean and its variance of one block's channel, and the degrees of freedom that this has.
 struct Tested {
     at: Option<[usize; 2]>,
     channel: usize,
     bias: f64,
     variance: f64,
+    freedom: f64,
+}
+
+impl Tested {
+    /// Standard errors of a normal distribution that are as rare as what was found is by chance.
+    ///
+    /// D. L. Wallace: *Bounds on normal approximations to Student's and the chi-square distributions*, Annals of
+    /// Mathematical Statistics 30 (1959).
+    fn sigmas(&self) -> f64 {
+        if self.bias == 0.0 {
+            return 0.0;
+        }
+        let (t, n) = (self.bias.abs() / self.variance.sqrt(), self.freedom);
+        if !(t.is_finite() && n.is_finite()) {
+            return t;
+        }
+        (8.0 * n + 1.0) / (8.0 * n + 3.0) * (n * (t * t / n).ln_1p()).sqrt()
+    }
+}
+
+/// Variances of independent numbers, added up.
+#[derive(Clone, Copy, Default)]
+struct Variances {
+    sum: f64,
+    squares: f64,
+}
+
+impl Variances {
+    fn add(&mut self, variance: f64) {
+        self.sum += variance;
+        self.squares += variance * variance;
+    }
+
+    /// Degrees of freedom of the sum of variances that have `each`: few of them may hold most of it.
+    ///
+    /// F. E. Satterthwaite: *An approximate distribution of estimates of variance components*, Biometrics 2 (1946); the
+    /// square of an estimate is by 1 + 2/n too large.
+    fn freedom(&self, each: f64) -> f64 {
+        if self.squares > 0.0 { (each + 2.0) * self.sum * self.sum / self.squares } else { f64::INFINITY }
+    }
 }
 
 impl Judgement {
@@ -111,8 +151,7 @@ impl Judgement {
         let means = means(values);
         let extremes = tested.iter().map(|it| {
             let share = if it.bias == 0.0 { 0.0 } else { it.bias.abs() / means[it.channel] };
-            let sigmas = if it.bias == 0.0 { 0.0 } else { it.bias.abs() / it.variance.sqrt() };
-            Extreme { at: it.at, channel: it.channel, bias: it.bias, share, sigmas }
+            Extreme { at: it.at, channel: it.channel, bias: it.bias, share, sigmas: it.sigmas() }
         });
         let mut most: Option<(bool, Extreme)> = None;
         for extreme in extremes {
@@ -153,7 +192,8 @@ fn tested(values: &Values<'_>, width: usize) -> Vec<Tested> {
     let mut result = Vec::new();
     for channel in 0..values.channels {
         let first = result.len();
-        let (mut all, mut of_all) = (0.0, 0.0_f64);
+        let (mut all, mut pixels_of_all) = (Variances::default(), 0.0_f64);
+        let mut total = 0.0;
         for y in (0..height).step_by(BLOCK) {
             for x in (0..width).step_by(BLOCK) {
                 let rows = y..height.min(y + BLOCK);
@@ -163,23 +203,25 @@ fn tested(values: &Values<'_>, width: usize) -> Vec<Tested> {
                 if counting.len() < 2 {
                     continue;
                 }
-                let bias = counting.iter().map(|&pixel| values.difference(pixel, channel)).sum::<f64>() / n;
-                let known: f64 = counting.iter().map(|&pixel| values.variance_of(pixel, channel)).sum();
-                let spread = || {
+                let sum = counting.iter().map(|&pixel| values.difference(pixel, channel)).sum::<f64>();
+                let bias = sum / n;
+                let mut of_block = Variances::default();
+                counting.iter().for_each(|&pixel| of_block.add(values.variance_of(pixel, channel)));
+                let mut freedom = of_block.freedom(values.freedom);
+                if !of_block.sum.is_finite() {
                     let of = |&pixel: &usize| (values.difference(pixel, channel) - bias).powi(2);
-                    counting.iter().map(of).sum::<f64>() * n / (n - 1.0)
-                };
-                let sum = if known.is_finite() { known } else { spread() };
-                (all, of_all) = (all + sum, of_all + n);
-                result.push(Tested { at: Some([x, y]), channel, bias, variance: sum / (n * n) });
+                    let spread = counting.iter().map(of).sum::<f64>() * n / (n - 1.0);
+                    (of_block, freedom) = (Variances { sum: spread, squares: spread * spread }, n - 1.0);
+                }
+                (total, pixels_of_all) = (total + sum, pixels_of_all + n);
+                (all.sum, all.squares) = (all.sum + of_block.sum, all.squares + of_block.squares);
+                result.push(Tested { at: Some([x, y]), channel, bias, variance: of_block.sum / (n * n), freedom });
             }
         }
         if result.len() > first + 1 {
-            let total: f64 = (0..values.counts.len())
-                .filter(|&pixel| values.counts[pixel])
-                .map(|pixel| values.difference(pixel, channel))
-                .sum();
-            result.push(Tested { at: None, channel, bias: total / of_all, variance: all / (of_all * of_all) });
+            let n = pixels_of_all;
+            let freedom = all.freedom(values.freedom);
+            result.push(Tested { at: None, channel, bias: total / n, variance: all.sum / (n * n), freedom });
         }
     }
     result
@@ -202,7 +244,7 @@ mod tests {
     fn judge(a: &[f32], b: &[f32], variance: Option<f32>) -> Judgement {
         let counts = vec![true; a.len()];
         let variance = variance.map(|v| vec![v; a.len()]);
-        let values = Values { channels: 1, colors: 1, a, b, variance, counts };
+        let values = Values { channels: 1, colors: 1, a, b, variance, freedom: 1e9, counts };
         Judgement::of("Pass", &values, WIDTH, [Noise::Unknown; 2], 0, 1)
     }
 
@@ -249,6 +291,23 @@ mod tests {
         let failed: usize = (0..400).map(fails).sum();
         // 1.1 expected of 400; those below half a percent are let pass, too.
         assert!(failed <= 5, "{failed}");
+    }
+
+    /// Noise in few pixels, known from two renders of each side, has few degrees of freedom.
+    #[test]
+    fn estimates_of_noise_are_noisy_themselves() {
+        let freedom = |variances: &[f64], each| {
+            let mut sum = Variances::default();
+            variances.iter().for_each(|v| sum.add(*v));
+            sum.freedom(each)
+        };
+        assert_eq!(freedom(&[2.0], 1.0), 3.0);
+        assert_eq!(freedom(&[1.0; 100], 2.0), 400.0);
+        // Quantiles of Student's distribution with 5 degrees of freedom that are as rare as 2 and 4 standard errors.
+        for (t, z) in [(2.648_65, 2.0), (12.281_4, 4.0)] {
+            let tested = Tested { at: None, channel: 0, bias: t, variance: 1.0, freedom: 5.0 };
+            assert!((tested.sigmas() - z).abs() < 0.05, "{} {z}", tested.sigmas());
+        }
     }
 
     #[test]

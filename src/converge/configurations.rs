@@ -22,7 +22,7 @@ pub enum Kind {
 /// A way to render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
-    /// As "sampler=random".
+    /// As "sampler=independent".
     pub name: String,
     /// What it is there for.
     pub kind: Kind,

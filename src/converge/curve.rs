@@ -72,21 +72,27 @@ impl Curve {
 fn point(shots: &[&Shot], reference: &Reference) -> Point {
     let n = shots.len() as f64;
     let (mut variance, mut bias, mut bias_squares, mut relative) = (0.0, 0.0, 0.0, 0.0);
-    let count = reference.values.len();
-    for i in 0..count {
-        let truth = f64::from(reference.values[i]);
-        let values = shots.iter().map(|shot| f64::from(shot.values[i]));
-        let mean = values.clone().sum::<f64>() / n;
-        let of_noise = values.map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let of_bias = (mean - truth).powi(2) - of_noise / n - reference.variance_at(i);
-        variance += of_noise;
-        bias += of_bias;
-        bias_squares += of_bias * of_bias;
-        relative += (of_noise + of_bias) / (truth * truth + DARK);
+    let pixels = reference.values.len() / 3;
+    for pixel in 0..pixels {
+        // Channels of a pixel go together.
+        let mut of_pixel = 0.0;
+        for i in 3 * pixel..3 * pixel + 3 {
+            let truth = f64::from(reference.values[i]);
+            let values = shots.iter().map(|shot| f64::from(shot.values[i]));
+            let mean = values.clone().sum::<f64>() / n;
+            let of_noise = values.map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            let of_bias = (mean - truth).powi(2) - of_noise / n - reference.variance_at(i);
+            variance += of_noise;
+            of_pixel += of_bias;
+            relative += (of_noise + of_bias) / (truth * truth + DARK);
+        }
+        bias += of_pixel;
+        bias_squares += of_pixel * of_pixel;
     }
-    let all = count.max(1) as f64;
+    let all = 3.0 * pixels.max(1) as f64;
     let (variance, bias_squared) = (variance / all, bias / all);
-    let spread = (bias_squares / all - bias_squared * bias_squared).max(0.0);
+    let per_pixel = all / 3.0;
+    let spread = (bias_squares / per_pixel - (bias / per_pixel).powi(2)).max(0.0);
     Point {
         spp: shots.iter().map(|shot| shot.spp).sum::<f64>() / n,
         seconds: shots.iter().map(|shot| shot.seconds).sum::<f64>() / n,
@@ -94,7 +100,7 @@ fn point(shots: &[&Shot], reference: &Reference) -> Point {
         rel_mse: (relative / all).max(0.0),
         variance,
         bias_squared,
-        bias_error: (spread / all).sqrt(),
+        bias_error: (spread / per_pixel).sqrt() / 3.0,
         picture: shots[0].values.clone(),
     }
 }
