@@ -270,6 +270,7 @@ impl Scene {
             textures: &self.textures,
             camera: &self.camera,
             origin: self.origin,
+            tinted: self.material(it).tinted,
         };
         Spot { around, it }
     }

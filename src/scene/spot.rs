@@ -33,6 +33,8 @@ pub struct Around<'a> {
     pub camera: &'a Camera,
     /// World position of render space's origin.
     pub origin: DVec3,
+    /// True where the colours of the instance stand in for those that its shape lacks.
+    pub tinted: bool,
 }
 
 /// A hit and what surrounds it.
@@ -190,9 +192,12 @@ impl Spot<'_> {
 
     fn vertex_color(&self, at: Beside) -> Option<Value> {
         match self.mesh() {
-            Some((mesh, triangle)) => Some(self.blend(mesh.corner_colors(triangle)?, self.beside(at).uv)),
-            None => Some(self.around.shape.color(self.it.primitive, self.it.at)?.map(f64::from)),
+            Some((mesh, triangle)) => {
+                mesh.corner_colors(triangle).map(|corners| self.blend(corners, self.beside(at).uv))
+            }
+            None => self.around.shape.color(self.it.primitive, self.it.at).map(|color| color.map(f64::from)),
         }
+        .or_else(|| self.around.instance.color.filter(|_| self.around.tinted).map(|color| color.map(f64::from)))
     }
 
     fn generated(&self, at: Beside) -> DVec3 {

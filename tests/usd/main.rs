@@ -13,6 +13,7 @@ mod instances;
 mod large;
 mod layers;
 mod mutation;
+mod opacity;
 mod pictures;
 mod primvars;
 mod reliefs;

@@ -54,6 +54,61 @@ fn the_stage_starts_where_it_says() {
     late.said_of("frame 40 is outside of the stage's time codes 1 to 20; what has samples there shows them");
 }
 
+/// A stage that says no range has that of what it has samples of: here a mesh in a layer that is shifted by 100 and
+/// slowed to half, and in an instance.
+#[test]
+fn a_frame_beyond_all_samples_is_held_and_told() {
+    let head = "#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n";
+    let mesh = "int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]";
+    let part = format!(
+        "#usda 1.0\n( defaultPrim = \"Part\" )\ndef Xform \"Part\" {{ def Mesh \"T\" {{ {mesh}
+            double3 xformOp:translate.timeSamples = {{ 0: (0, 0, 0), 10: (5, 0, 0) }}
+            uniform token[] xformOpOrder = [\"xformOp:translate\"] }} }}"
+    );
+    let place = |more: &str| {
+        format!("{head}def \"A\" ( {more} prepend references = @part.usda@ (offset = 100; scale = 2) ) {{ }}")
+    };
+    for more in ["", "instanceable = true"] {
+        let (_dir, path) = stage_of(&[("stage.usda", &place(more)), ("part.usda", &part)]);
+        let at = |frame: f64| try_load(&path, &at_frame(frame)).unwrap();
+        for (frame, x) in [(99.0, 0.0), (100.0, 0.0), (110.0, 2.5), (120.0, 5.0), (120.5, 5.0)] {
+            let loaded = at(frame);
+            assert_eq!(loaded.origin("/A/T"), [x, 0.0, 0.0], "frame {frame}");
+            let said = format!(
+                "frame {frame}: the stage names no range, and what it has samples of has them from 100 to 120; the nearest are held"
+            );
+            let outside = !(100.0..=120.0).contains(&frame);
+            assert_eq!(loaded.said.iter().any(|told| told.contains(&said)), outside, "{:?}", loaded.said);
+            assert_eq!(loaded.said.len(), usize::from(outside), "{:?}", loaded.said);
+        }
+        assert!(try_load(&path, &ImportOptions::default()).unwrap().said.is_empty());
+    }
+    // What has one sample, or none, shows the same at any frame.
+    for values in ["token visibility.timeSamples = { 3: \"inherited\" }", ""] {
+        let (_dir, path) = stage_of(&[("stage.usda", &format!("{head}def Mesh \"M\" {{ {mesh}\n{values} }}"))]);
+        assert!(try_load(&path, &at_frame(40.0)).unwrap().said.is_empty());
+    }
+}
+
+/// The same of a stage that many threads read.
+#[test]
+fn samples_are_met_by_all_threads() {
+    let mut text = String::from("#usda 1.0\n( metersPerUnit = 1 upAxis = \"Y\" )\n");
+    for i in 0..700 {
+        let end = 10 + i;
+        text += &format!(
+            "def Sphere \"S{i}\" {{ double radius.timeSamples = {{ {}: 1, {end}: 2 }} }}\n",
+            if i == 350 { -5 } else { 1 }
+        );
+    }
+    let (_dir, path) = stage_of(&[("stage.usda", &text)]);
+    let loaded = try_load(&path, &at_frame(1000.0)).unwrap();
+    loaded.said_of("has them from -5 to 709");
+    assert_eq!(loaded.said.len(), 1, "{:?}", loaded.said);
+    assert!(try_load(&path, &at_frame(709.0)).unwrap().said.is_empty());
+}
+
 #[test]
 fn what_moves_while_a_shutter_is_open_is_kept() {
     let loaded = load("times.usda", &at_frame(6.0));

@@ -45,7 +45,8 @@ pub enum Leaf {
         /// What is taken where neither has it.
         fallback: Value,
     },
-    /// `MeshDesc::colors`; white where there are none. They multiply the base color as well.
+    /// `MeshDesc::colors`, else, of a material that is `tinted`, `InstanceDesc::color`; white where there are none.
+    /// They multiply the base color as well.
     VertexColor,
     /// Interpolated normal as wound, object space, not unit: what tangent-space maps are meant for.
     SmoothNormal,

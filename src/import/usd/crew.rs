@@ -136,7 +136,10 @@ fn by_many(reading: &Reading<'_>, division: Division, aside: fn(&str) -> bool) -
     for parcel in parcels {
         match parcel {
             Parcel::Part(number, part) => parts[number] = Some(part),
-            Parcel::Warnings(warnings) => reading.warnings.borrow_mut().extend(warnings),
+            Parcel::Told(warnings, times) => {
+                reading.warnings.borrow_mut().extend(warnings);
+                reading.extent.add(times);
+            }
         }
     }
 
@@ -186,7 +189,8 @@ fn moments(reading: &Reading<'_>, shutter: [f64; 2], shares: &[Vec<Path>], notes
 
 enum Parcel {
     Part(usize, Part),
-    Warnings(Warnings),
+    /// What was told, and from when to when there are samples.
+    Told(Warnings, Option<[f64; 2]>),
 }
 
 /// When something in a share has a sample, and its instances.
@@ -234,7 +238,7 @@ impl Crew {
             }
         }
         reading.warn_of_composition();
-        let _ = self.sender.send(Parcel::Warnings(reading.warnings.take()));
+        let _ = self.sender.send(Parcel::Told(reading.warnings.take(), reading.extent.met()));
         drop(self.sender);
         let _ = self.held.recv();
     }

@@ -23,6 +23,7 @@ mod crew;
 mod cycles;
 mod diagnostics;
 mod draw_mode;
+mod extent;
 mod files;
 mod flow;
 mod frame;

@@ -43,6 +43,7 @@ pub(super) fn build(reading: &Reading<'_>) -> Result<SceneDesc> {
         reading.warnings.borrow_mut().push(&reading.place, what);
     }
     units::warn_of_layers(reading);
+    reading.extent.tell(&reading.place, &mut reading.warnings.borrow_mut());
     reading.warn_of_composition();
     Ok(scene)
 }

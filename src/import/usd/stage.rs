@@ -14,6 +14,7 @@ use super::super::ImportOptions;
 use super::authored::Authored;
 use super::clip_sets::Missing;
 use super::clips::Declared;
+use super::extent::Extent;
 use super::files::Files;
 use super::layer::{Kept, Met, Site};
 use super::retime::Retime;
@@ -52,6 +53,7 @@ pub(super) struct Reading<'a> {
     /// Classes that prims of layers that are referred to name; they are implied in others.
     pub classes: RefCell<HashSet<sdf::Path>>,
     pub declared: RefCell<Declared>,
+    pub extent: Extent,
     pub missing_clips: RefCell<Missing>,
     /// What was told so far.
     pub warnings: RefCell<Warnings>,
@@ -89,6 +91,7 @@ impl<'a> Reading<'a> {
             .map_err(|e| Error::invalid(&place, format!("can't be opened as USD: {}", wording::plain(&chain(&e)))))?;
         let mut warnings = Warnings::new();
         let time = time(&stage, options.frame, &place, &mut warnings);
+        let extent = Extent::new(options.frame, stage.has_authored_time_code_range());
         let units = Units::of_root(&stage, &place, &mut warnings);
         let root = sdf::Path::abs_root();
         // What the metadata that files call `doc` is named in memory.
@@ -109,6 +112,7 @@ impl<'a> Reading<'a> {
             clipped: Cell::new(false),
             classes: RefCell::default(),
             declared: RefCell::default(),
+            extent,
             missing_clips: RefCell::default(),
             warnings: RefCell::new(warnings),
             documents: RefCell::default(),
@@ -196,6 +200,7 @@ impl<'a> Reading<'a> {
             let value = spline.at(time).filter(|value| T::accepts_kind(ValueKind::from(value)))?;
             return T::try_from(value).ok();
         }
+        self.extent.note(self, attribute);
         let time = Retime::of(self, attribute).map_or(time, |retime| retime.asked(time));
         match attribute.get_at::<T>(time) {
             Ok(Some(value)) => Some(value),

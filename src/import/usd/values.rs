@@ -4,6 +4,7 @@ use openusd::sdf::{self, AssetPath, Value};
 use openusd::tf::Token;
 use openusd::usd::Prim;
 
+use super::material;
 use super::stage::Reading;
 
 /// A prim whose attributes are read; what is said of them is said of `path`.
@@ -33,7 +34,8 @@ pub(super) fn pick<T: Copy>(
 impl Values<'_> {
     /// A float, authored or the schema's fallback; `None` where there is none or no number.
     pub fn number(&self, name: &str) -> Option<f64> {
-        self.finite(name, self.reading.value::<f32>(self.prim, name).map(f64::from))
+        let own = || self.reading.value::<f32>(self.prim, name).map(f64::from);
+        self.finite(name, self.connected(name).map_or_else(own, |[value, ..]| Some(value)))
     }
 
     /// A double.
@@ -50,7 +52,21 @@ impl Values<'_> {
     }
 
     pub fn flag(&self, name: &str) -> Option<bool> {
-        self.reading.value(self.prim, name)
+        self.connected(name).map_or_else(|| self.reading.value(self.prim, name), |[value, ..]| Some(value != 0.0))
+    }
+
+    /// What an input takes from where it is connected to. Where that is nothing that is the same everywhere, its own
+    /// value counts, which is told.
+    fn connected(&self, name: &str) -> Option<[f64; 4]> {
+        let attribute = name.starts_with("inputs:").then(|| self.prim.attribute(name))?;
+        if !attribute.has_authored_connections().unwrap_or(false) {
+            return None;
+        }
+        let value = material::of_connection(self.reading, &attribute);
+        if value.is_none() {
+            self.warn(format!("{name} is connected to what has no constant value: its own value is taken"));
+        }
+        value
     }
 
     pub fn token(&self, name: &str) -> Option<String> {
@@ -59,7 +75,10 @@ impl Values<'_> {
 
     /// Three floats.
     pub fn color(&self, name: &str) -> Option<[f64; 3]> {
-        let color = self.reading.value::<[f32; 3]>(self.prim, name)?.map(f64::from);
+        let color = match self.connected(name) {
+            Some([r, g, b, _]) => [r, g, b],
+            None => self.reading.value::<[f32; 3]>(self.prim, name)?.map(f64::from),
+        };
         if !color.iter().all(|c| c.is_finite()) {
             self.warn(format!("{name} is {color:?}: taken for not authored"));
             return None;

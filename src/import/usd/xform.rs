@@ -93,6 +93,9 @@ impl Xform {
             } else {
                 let attribute = prim.attribute(name);
                 let spline = reading.spline(&attribute);
+                if spline.is_none() {
+                    reading.extent.note(reading, &attribute);
+                }
                 let retime = Retime::of(reading, &attribute).filter(|_| spline.is_none());
                 xform.ops.push(Op { op: XformOp::new(&attribute, inverse), spline, retime });
             }

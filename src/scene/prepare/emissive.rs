@@ -70,6 +70,8 @@ struct Slot {
     texture: Option<TextureRef>,
     /// Radiance may be below 0.
     unbounded: bool,
+    /// Colours of instances stand in for those that shapes lack.
+    tinted: bool,
     opacity: Opacity,
     alpha: f32,
     /// Times this channel.
@@ -122,7 +124,8 @@ impl MaterialEmission {
         let Owner { instance, index, asked, camera, origin } = self.owner.as_ref()?;
         let it = Interaction::on(&self.shape, instance, triangle, barycentrics, wo, time);
         let (shape, textures) = (&self.shape, &self.textures);
-        let around = Around { shape, instance, index: *index, asked, textures, camera, origin: *origin };
+        let (origin, tinted) = (*origin, self.slot(triangle).tinted);
+        let around = Around { shape, instance, index: *index, asked, textures, camera, origin, tinted };
         Some(Spot { around, it: &it }.run(program)[0])
     }
 
@@ -286,6 +289,7 @@ fn slot(material: &Material, textures: &[Texture]) -> Slot {
         texture: emission.map(|(input, _)| input),
         unbounded: material.unbounded,
         opacity: material.opacity,
+        tinted: material.tinted,
         alpha: material.alpha.factor,
         alpha_texture,
         least: (factor * whole * OF_TEXTURE).map(f32::abs),

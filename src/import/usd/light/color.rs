@@ -5,11 +5,6 @@ use super::blender;
 
 /// `intensity · 2^exposure · color · temperature`, before `normalize`.
 pub(super) fn emission(values: &Values<'_>) -> [f64; 3] {
-    for name in ["inputs:intensity", "inputs:exposure", "inputs:color"] {
-        if values.prim.attribute(name).has_authored_connections().unwrap_or(false) {
-            values.warn(format!("{name} is connected, which is not read: its own value is taken"));
-        }
-    }
     let strength =
         values.number("inputs:intensity").unwrap_or(1.0) * values.number("inputs:exposure").unwrap_or(0.0).exp2();
     let color = values.color("inputs:color").unwrap_or([1.0; 3]);
@@ -122,5 +117,58 @@ mod tests {
         assert_eq!(emission("/C"), [50000.0; 3]);
         assert_eq!(emission("/D"), [1.0; 3]);
         assert!(stage.said().contains("inputs:intensity is NaN"), "{}", stage.said());
+    }
+
+    /// Connections as they may be made: to an input of what the light is in, to nodes that are the same everywhere.
+    #[test]
+    fn connected_inputs_have_the_value_that_they_are_connected_to() {
+        let stage = Stage::new(
+            "",
+            r#"def Material "Look" {
+                color3f inputs:tint = (0.25, 0.5, 1)
+                float inputs:power.timeSamples = { 0: 3 }
+                float inputs:unset
+                def NodeGraph "Graph" {
+                    float inputs:power.connect = </Look.inputs:power>
+                    color3f outputs:color.connect = </Look/Graph/Times.outputs:out>
+                    float outputs:power.connect = </Look/Graph.inputs:power>
+                    def Shader "One" { uniform token info:id = "ND_constant_color3"
+                        color3f inputs:value = (1, 2, 3)
+                        color3f outputs:out }
+                    def Shader "Times" { uniform token info:id = "ND_multiply_color3FA"
+                        color3f inputs:in1.connect = </Look/Graph/One.outputs:out>
+                        float inputs:in2 = 0.5
+                        color3f outputs:out }
+                    def Shader "Noise" { uniform token info:id = "ND_noise2d_float"
+                        float outputs:out }
+                }
+                def SphereLight "A" {
+                    color3f inputs:color = (9, 9, 9)
+                    color3f inputs:color.connect = </Look.inputs:tint>
+                    float inputs:intensity.connect = </Look/Graph.outputs:power>
+                    float inputs:exposure = 1
+                }
+                def SphereLight "B" {
+                    color3f inputs:color.connect = </Look/Graph.outputs:color>
+                    float inputs:intensity = 2
+                    float inputs:intensity.connect = </Look/Graph/Noise.outputs:out>
+                }
+                def SphereLight "C" {
+                    float inputs:intensity = 5
+                    float inputs:intensity.connect = </Look.inputs:unset>
+                    float inputs:exposure = 2
+                    float inputs:exposure.connect = </Gone.inputs:exposure>
+                }
+            }"#,
+        );
+        let emission = |path: &str| {
+            stage.with(path, |reading, placed| emission(&Values { reading, prim: &placed.prim, path: &placed.path }))
+        };
+        assert_eq!(emission("/Look/A"), [1.5, 3.0, 6.0]);
+        assert_eq!(stage.said(), "");
+        assert_eq!(emission("/Look/B"), [1.0, 2.0, 3.0]);
+        assert!(stage.said().contains("/Look/B: inputs:intensity is connected to what has no constant value"));
+        assert_eq!(emission("/Look/C"), [20.0; 3]);
+        assert!(stage.said().contains("/Look/C: inputs:exposure is connected to what has no"), "{}", stage.said());
     }
 }

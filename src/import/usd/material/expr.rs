@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::desc::graph::{Blend, Function, Leaf, Math, Procedural, Quantity, Space, Value as V};
+use crate::desc::graph::{Blend, Function, Layer, Leaf, Math, Procedural, Quantity, Space, Value as V};
 use crate::desc::{TextureRef, TextureTransform};
 
 /// An expression in an [`Exprs`].
@@ -60,6 +60,13 @@ pub(super) enum Op {
         height: Id,
         scale: Id,
         uv: Id,
+    },
+    /// What a white layer reflects, as graphs have it.
+    Albedo {
+        layer: Layer,
+        roughness: Id,
+        ior: Id,
+        normal: Id,
     },
     Apply(Function, Vec<Id>),
 }
@@ -134,6 +141,7 @@ impl Exprs {
                 Op::Apply(_, args) | Op::Procedural(_, args) => args.iter().for_each(need),
                 Op::Image { uv: from, .. } | Op::Transform { value: from, .. } => need(from),
                 Op::Relief { height, scale, uv } => [height, scale, uv].into_iter().for_each(need),
+                Op::Albedo { roughness, ior, normal, .. } => [roughness, ior, normal].into_iter().for_each(need),
                 Op::Constant(_) | Op::Lookup(_) | Op::Uv { .. } | Op::Primvar { .. } | Op::Leaf(_) => {}
             }
         }

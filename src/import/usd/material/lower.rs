@@ -62,6 +62,10 @@ impl Lowering {
                 let [height, scale, uv] = [height, scale, uv].map(|id| self.at(*id));
                 self.graph.push(graph::Op::Relief(Relief { height, scale, uv }))
             }
+            Op::Albedo { layer, roughness, ior, normal } => {
+                let [roughness, ior, normal] = [roughness, ior, normal].map(|id| self.at(*id));
+                self.graph.push(graph::Op::Albedo { layer: *layer, roughness, ior, normal })
+            }
             Op::Apply(function, args) => {
                 let args: Vec<ValueId> = args.iter().map(|arg| self.at(*arg)).collect();
                 self.graph.apply(function.clone(), &args)
@@ -107,6 +111,8 @@ impl Lowering {
                 // Anywhere, seen from ahead; signed noise is 0 in the mean.
                 Op::Leaf(_) | Op::Procedural(..) => [0.0, 0.0, 0.0, 1.0],
                 Op::Transform { value, .. } => known[value],
+                // At normal incidence.
+                Op::Albedo { ior, .. } => known[ior].map(|ior| ((ior - 1.0) / (ior + 1.0)).powi(2)),
                 Op::Apply(function, args) => {
                     let args: Vec<Value> = args.iter().map(|arg| known[arg]).collect();
                     function.eval(&args)

@@ -6,10 +6,12 @@
 //! ```
 
 mod card;
+mod clear;
 mod closure;
 mod coat;
 mod color;
 mod compositing;
+mod constant;
 mod evaluate;
 mod expr;
 mod geometry;
@@ -37,6 +39,7 @@ use std::sync::Arc;
 use openusd::sdf;
 use openusd_schemas::shade as schema;
 
+pub(super) use self::constant::of_connection;
 use self::network::{Network, Source, Value};
 use self::surface::{Finished, VertexColors};
 use super::images::{File, Images};

@@ -28,8 +28,7 @@ pub(super) fn read(e: &mut Evaluator<'_, '_>, source: &Source) -> Option<Surface
     }
 }
 
-/// UsdPreviewSurface. Opacity is alpha in both opacity modes, as Cycles' Hydra delegate has it; Storm keeps
-/// the highlights of "transparent" surfaces, which is told of those that ask for it.
+/// UsdPreviewSurface.
 fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let mut s = Surface::new(e);
     s.base_color = e.input(node, "diffuseColor", [0.18, 0.18, 0.18, 1.0]);
@@ -50,18 +49,33 @@ fn preview(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     }
     s.opacity = e.scalar(node, "opacity", 1.0);
     let threshold = e.uniform(node, "opacityThreshold", 0.0);
-    if e.node(node).text("opacityMode") == Some("transparent") && !e.exprs.is(s.opacity, 1.0) && threshold <= 0.0 {
-        e.warn(node, "opacityMode \"transparent\" is rendered as \"presence\": highlights fade with the surface");
-    }
-    if threshold > 0.0 {
-        s.alpha = Alpha::Mask(threshold);
-    }
+    s.alpha = match is_presence(e, node) {
+        _ if threshold > 0.0 => Alpha::Mask(threshold),
+        true => Alpha::Blend,
+        false => Alpha::Clear,
+    };
     s.occlusion = e.optional(node, "occlusion");
     let displacement = e.scalar(node, "displacement", 0.0);
     if !e.exprs.is(displacement, 0.0) {
         e.warn(node, "its displacement is left out: not computed yet");
     }
     s
+}
+
+/// opacityMode: true where opacity fades the whole surface, false where it fades what is beneath its reflections.
+/// Blender writes Principled's alpha as opacity, and no mode.
+fn is_presence(e: &mut Evaluator<'_, '_>, node: usize) -> bool {
+    match e.node(node).text("opacityMode") {
+        Some("presence") => true,
+        Some("transparent") => false,
+        Some(other) => {
+            e.warn(node, format!("there is no opacityMode \"{other}\"; \"transparent\" is used"));
+            false
+        }
+        // MaterialX has the place in the list.
+        None if e.node(node).has("opacityMode") => e.uniform(node, "opacityMode", 0.0) == 1.0,
+        None => e.materials.reading.blender,
+    }
 }
 
 fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {

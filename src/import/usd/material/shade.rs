@@ -22,6 +22,18 @@ pub(super) fn network(reading: &Reading<'_>, output: &Attribute) -> Option<(Netw
     Some((builder.network, source))
 }
 
+/// What `attribute`, an input, is connected to, with the network behind it; `None` where that gives nothing.
+pub(super) fn connected(reading: &Reading<'_>, attribute: &Attribute) -> Option<(Network, Input)> {
+    let typed = shade::Input::from_attribute(attribute.clone())?;
+    let found = typed.value_producing_attributes(ProducerFilter::Any).ok()?;
+    if found.first()?.attribute().path() == attribute.path() {
+        return None;
+    }
+    let mut builder = Builder { reading, network: Network::default(), known: HashMap::new() };
+    let input = builder.input(attribute, 0);
+    Some((builder.network, input))
+}
+
 struct Builder<'a, 'r> {
     reading: &'a Reading<'r>,
     network: Network,

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use super::clear::{self, Clear};
 use super::evaluate::Evaluator;
 use super::expr::{Id, Lookup, Op};
 use super::lower::Lowering;
 use crate::desc::graph::{Function, Leaf, Math, Value as V};
 use crate::desc::{
-    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, SubsurfaceDesc, SubsurfaceMethod, TranslucentDesc, VolumeDesc,
+    AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, ClosureDesc, CoatDesc, ColorInput, IridescenceDesc,
+    MaterialDesc, NormalInput, PartDesc, ScalarInput, SheenDesc, SubsurfaceDesc, SubsurfaceMethod, TranslucentDesc,
+    VolumeDesc,
 };
 
 /// A surface whose inputs are expressions, in `MaterialDesc`'s sense. Normals are in tangent space.
@@ -87,6 +89,8 @@ pub(super) enum Alpha {
     Mask(f64),
     /// As a share; opaque where it is 1 everywhere.
     Blend,
+    /// The same of what is beneath reflections, which stay.
+    Clear,
 }
 
 /// A material and what it needs of the shapes that it is bound to.
@@ -142,15 +146,17 @@ impl Surface {
 /// The surface as a material; `node` is where warnings are told.
 pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -> Finished {
     let mut f = Finisher { e, node, lowering: Lowering::default() };
-    let (color, base_color) = f.without_primvar("displayColor", surface.base_color);
-    let (opacity, alpha) = match color {
-        Some(_) => f.without_primvar("displayOpacity", surface.opacity),
-        // Vertex colors hold both, and the color would tint.
-        None => (None, surface.opacity),
-    };
-    let mut colors = VertexColors { color, opacity };
+    let mut surface = surface;
+    let mut colors = VertexColors::default();
+    (colors.color, surface.base_color) = f.without_primvar("displayColor", surface.base_color);
+    // Vertex colors hold both, and the color would tint.
+    if colors.color.is_some() {
+        (colors.opacity, surface.opacity) = f.without_primvar("displayOpacity", surface.opacity);
+    }
+    let of_shape = colors.opacity.is_some();
+    let clear = (surface.alpha == Alpha::Clear).then(|| clear::split(&mut f.e.exprs, &mut surface, of_shape)).flatten();
     let mut material = MaterialDesc {
-        base_color: f.color(base_color),
+        base_color: f.color(surface.base_color),
         metallic: f.scalar(surface.metallic),
         metal_edge: f.color(surface.metal_edge),
         diffuse_roughness: f.scalar(surface.diffuse_roughness),
@@ -161,19 +167,20 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         transmission: f.scalar(surface.transmission),
         dispersion: surface.dispersion.max(0.0),
         emission: f.color(surface.emission),
-        alpha: f.scalar(alpha),
+        alpha: f.scalar(surface.opacity),
         normal: surface.normal.and_then(|id| f.normal("normal", id)),
         occlusion: surface.occlusion.and_then(|id| f.occlusion(id)),
         ..MaterialDesc::default()
     };
     material.alpha_mode = match surface.alpha {
-        Alpha::Ignored => AlphaMode::Opaque,
+        Alpha::Ignored | Alpha::Clear => AlphaMode::Opaque,
         Alpha::Mask(cutoff) => AlphaMode::Mask { cutoff },
         Alpha::Blend if material.alpha == ScalarInput::constant(1.0) && colors.opacity.is_none() => AlphaMode::Opaque,
         Alpha::Blend => AlphaMode::Blend,
     };
     if material.alpha_mode == AlphaMode::Opaque {
-        (material.alpha, colors.opacity) = (ScalarInput::constant(1.0), None);
+        material.alpha = ScalarInput::constant(1.0);
+        colors.opacity = colors.opacity.filter(|_| clear.is_some());
     }
     if material.transmission.factor > 0.0 && !surface.thin_walled {
         let (distance, color) = surface.attenuation.unwrap_or((f64::INFINITY, f.e.exprs.number(1.0)));
@@ -227,6 +234,9 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
             let rotation = ScalarInput::constant(rotation);
             AnisotropyDesc { strength, rotation, texture: None, tangent: None, law: AnisotropyLaw::Aspect }
         });
+    if let Some(clear) = clear {
+        f.see_through(&mut material, clear);
+    }
     material.graph = f.lowering.graph;
     Finished { material, colors }
 }
@@ -238,6 +248,24 @@ struct Finisher<'e, 'm, 'a> {
 }
 
 impl Finisher<'_, '_, '_> {
+    /// What `clear` says besides the layers of `material`.
+    fn see_through(&mut self, material: &mut MaterialDesc, clear: Clear) {
+        material.transparency = self.color(clear.passes);
+        let Some([opaque, rest, dielectric]) = clear.parts else { return };
+        let layers = MaterialDesc {
+            base_color: ColorInput::constant([0.0; 3]),
+            metallic: ScalarInput::constant(0.0),
+            specular: self.scalar(dielectric),
+            ..material.clone()
+        };
+        material.parts = [(opaque, material.clone()), (rest, layers)]
+            .map(|(weight, layers)| {
+                let closure = ClosureDesc::Layered(Box::new(layers));
+                PartDesc { weight: self.scalar(weight), normal: None, closure }
+            })
+            .into();
+    }
+
     fn color(&mut self, id: Id) -> ColorInput {
         match self.e.exprs.op(id) {
             Op::Constant([r, g, b, _]) => ColorInput::constant([*r, *g, *b]),

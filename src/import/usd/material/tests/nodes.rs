@@ -168,12 +168,29 @@ fn the_normal_of_a_surface_bends_nothing() {
 }
 
 #[test]
-fn an_opacity_mode_that_is_not_obeyed_is_told() {
-    let said = |lines: &str| preview(lines, "").warnings;
-    let asked = "float inputs:opacity = 0.4\ntoken inputs:opacityMode = \"transparent\"";
-    assert!(said(asked).contains("opacityMode \"transparent\" is rendered as \"presence\""));
-    assert_eq!(said("float inputs:opacity = 0.4\ntoken inputs:opacityMode = \"presence\""), "");
-    assert_eq!(said("token inputs:opacityMode = \"transparent\""), "");
+fn opacity_modes_have_their_fallback_and_what_is_none_is_told() {
+    let clear = |read: &Read| read.material().transparency != ColorInput::constant([0.0; 3]);
+    let is = |lines: &str| {
+        let read = preview(lines, "");
+        (clear(&read), read.material().alpha_mode, read.warnings)
+    };
+    let half = "float inputs:opacity = 0.5\ntoken inputs:opacityMode";
+    assert_eq!(is("float inputs:opacity = 0.5"), (true, AlphaMode::Opaque, String::new()));
+    assert_eq!(is(&format!("{half} = \"transparent\"")), (true, AlphaMode::Opaque, String::new()));
+    assert_eq!(is(&format!("{half} = \"presence\"")), (false, AlphaMode::Blend, String::new()));
+    assert_eq!(is("token inputs:opacityMode = \"transparent\""), (false, AlphaMode::Opaque, String::new()));
+    let (is_clear, _, said) = is(&format!("{half} = \"odd\""));
+    assert!(is_clear && said.contains("no opacityMode \"odd\""), "{said}");
+    // MaterialX's is a number.
+    let id = "ND_UsdPreviewSurface_surfaceshader";
+    assert!(clear(&mtlx(id, "float inputs:opacity = 0.5", "")));
+    assert!(!clear(&mtlx(id, "float inputs:opacity = 0.5\nint inputs:opacityMode = 1", "")));
+    // Blender's exporter writes alpha, and no mode.
+    let text = material_of("", "UsdPreviewSurface", "float inputs:opacity = 0.5", "");
+    let folder = tempfile::tempdir().unwrap();
+    assert!(clear(&read_at(folder.path(), &text, "/m")));
+    let read = read_at(folder.path(), &format!("(\n doc = \"Blender v5.0.1\"\n)\n{text}"), "/m");
+    assert_eq!((clear(&read), read.material().alpha_mode), (false, AlphaMode::Blend));
 }
 
 /// The nodes' definitions in numbers; every leaf is 0.5 and its alpha, too.

@@ -44,6 +44,7 @@ fn preview_surface_reads_every_input() {
          float inputs:clearcoatRoughness = 0.125
          float inputs:ior = 1.75
          float inputs:opacity = 0.5
+         token inputs:opacityMode = \"presence\"
          float inputs:displacement = 0.1",
         "",
     );
@@ -179,6 +180,7 @@ fn what_is_missing_has_its_fallback_and_a_warning() {
     let read = preview(
         "color3f inputs:diffuseColor.connect = </m/gone.outputs:rgb>
          float inputs:opacity.connect = </m/gone.outputs:a>
+         token inputs:opacityMode = \"presence\"
          color3f inputs:emissiveColor.connect = </m/none.outputs:rgb>",
         &nodes,
     );
@@ -234,6 +236,7 @@ fn primvars_become_vertex_colors_or_fallbacks() {
     let read = preview(
         "color3f inputs:diffuseColor.connect = </m/c.outputs:result>
          float inputs:opacity.connect = </m/o.outputs:result>
+         token inputs:opacityMode = \"presence\"
          float inputs:roughness.connect = </m/r.outputs:result>",
         nodes,
     );
