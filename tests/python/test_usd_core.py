@@ -44,6 +44,7 @@ class Answer:
         self.meshes, self.rounds, self.warnings = values["meshes"], values["rounds"], info["warnings"]
         by_place = lambda things: {thing["place"]: thing for thing in things}
         self.lights, self.cameras = by_place(values["lights"]), by_place(values["cameras"])
+        self.materials = values["materials"]
         self.instances = defaultdict(list)
         for instance in values["instances"]:
             self.instances[instance["place"]].append(instance)
@@ -290,8 +291,10 @@ def judge_lights(stage, answer, found):
             found.check(False, path, "is no light")
             continue
         expected, kind = stage.light(prim), light["kind"]
+        # Sums over a profile are those of another rule.
+        tolerance = 1e-4 if stage.ies(prim) else 1e-6
         for key, value in expected.items():
-            same = kind[key] == value if key == "kind" else key in kind and near(kind[key], value)
+            same = kind[key] == value if key == "kind" else key in kind and near(kind[key], value, tolerance)
             found.check(same, path, f"{key} is {kind.get(key)}, not {value}")
         matrix = np.reshape(light["matrix"], (4, 4))
         if kind["kind"] == "dome":
@@ -300,11 +303,14 @@ def judge_lights(stage, answer, found):
             ours /= np.linalg.norm(ours, axis=1, keepdims=True)
             expected = stage.dome_directions(prim)
             found.check(near(ours, expected), path, f"its image lies to\n{ours}\nnot\n{expected}")
+            judge_shadow(stage, prim, light["links"], found)
             judge_motion(stage, prim, light, answer, found)
             continue
         found.check(near(matrix, stage.world(prim)), path, f"stands at\n{matrix}\nand not at\n{stage.world(prim)}")
         judge_motion(stage, prim, light, answer, found)
         judge_shaping(stage, prim, light, found)
+        judge_shadow(stage, prim, light["links"], found)
+    judge_shining(stage, answer, found)
 
 
 def judge_shaping(stage, prim, light, found):
@@ -312,8 +318,11 @@ def judge_shaping(stage, prim, light, found):
     if shaping is None or light["kind"]["kind"] == "distant":
         found.check(cone is None, path, f"has the cone {cone}, and no ShapingAPI")
         return
-    angle, softness, focus = shaping
+    angle, softness, focus, tint = shaping
     found.check(near(light["shaping"]["focus"], max(focus, 0.0)), path, f"focus is not {focus}")
+    ours = light["shaping"]["focus_tint"]
+    found.check(near(ours, tint if focus > 0 else np.zeros(3)), path, f"the tint is {ours}, not {tint}")
+    judge_ies(stage.ies(prim), light["shaping"]["ies"], path, found)
     if cone is not None:
         soft = "blend" if stage.blender else "softness"
         same = near([cone["angle"], cone[soft]], [math.radians(angle), min(max(softness, 0.0), 1.0)])
@@ -321,6 +330,42 @@ def judge_shaping(stage, prim, light, found):
     else:
         flat = light["kind"]["kind"] in ("rect", "disk")
         found.check(softness <= 0 and angle >= (90 if flat else 180), path, f"lost its cone of {angle} degrees")
+
+
+def judge_ies(expected, ies, path, found):
+    """Its factor is part of the emission."""
+    if expected is None or ies is None:
+        return found.check(expected is None and ies is None, path, f"has the profile {ies}, not {expected}")
+    same = ies["profile"] == expected[0] and near(ies["angle_scale"], expected[1]) and not ies["keep_power"]
+    return found.check(same, path, f"has the profile {ies}, not {expected}")
+
+
+def judge_shadow(stage, prim, links, found):
+    path, (casts, shadow) = str(prim.GetPath()), stage.shadow(prim)
+    found.check(links["cast_shadow"] == casts or stage.blender, path, f"cast_shadow is {links['cast_shadow']}")
+    ours = links["shadow"]
+    for key, value in zip(("color", "distance", "falloff", "gamma"), shadow):
+        mine = math.inf if ours[key] is None else ours[key]
+        same = mine == value if np.ndim(value) == 0 and math.isinf(value) else near(mine, value)
+        found.check(same, path, f"{key} of its shadows is {ours[key]}, not {value}")
+
+
+def judge_shining(stage, answer, found):
+    """Shapes that are lights."""
+    for path, (light, own) in stage.shining().items():
+        instances, shape = answer.instances.get(str(path), []), stage.stage.GetPrimAtPath(path)
+        if len(instances) != 1 or not instances[0]["materials"]:
+            continue
+        name, instance = str(light.GetPath()), instances[0]
+        judge_shadow(stage, light, instance["links"], found)
+        expected = stage.glow(light, shape, own)
+        if expected is None or len(instance["materials"]) != 1 or not instance["materials"][0]:
+            continue
+        material = answer.materials[instance["materials"][0]["index"]]
+        ours = np.array(material["emission"]["factor"]) * material["emission_strength"]
+        found.check(near(ours, expected[0], 1e-5), name, f"it shines with {ours}, not {expected[0]}")
+        black = material["base_color"]["factor"] == [0, 0, 0] and material["specular"]["factor"] == 0
+        found.check(black or not expected[1], name, "its material responds to light")
 
 
 def judge_cameras(stage, answer, found):
@@ -408,6 +453,14 @@ def material(path):
     }}
     """
 
+
+FLAT = MESH.replace("(1, 1, 0.5)", "(1, 1, 0)")
+
+# The cosine of the angle to the axis, times 7 candela, up to a right angle.
+COSINE = "IESNA:LM-63-2002\nTILT=NONE\n1 1000 2 181 1 1 2 0 0 0 1 1 1\n{}\n0\n{}\n".format(
+    " ".join(str(i / 2) for i in range(181)),
+    " ".join(f"{3.5 * math.cos(math.radians(i / 2)):.9f}" for i in range(181)),
+)
 
 CASES = {
     "instances": {
@@ -669,6 +722,61 @@ CASES = {
             def DomeLight "Dome" { float xformOp:rotateX = 30; uniform token[] xformOpOrder = ["xformOp:rotateX"] }
             def DomeLight_1 "Pole" { float xformOp:rotateX = 30; uniform token[] xformOpOrder = ["xformOp:rotateX"] }
             def SphereLight "Off" { token visibility = "invisible" }
+            def SphereLight "Measured" (prepend apiSchemas = ["ShapingAPI", "ShadowAPI"]) {
+                asset inputs:shaping:ies:file = @./cosine.ies@
+                float inputs:shaping:ies:angleScale = 0.25
+                float inputs:shaping:cone:angle = 180
+                float inputs:shaping:focus = 3
+                color3f inputs:shaping:focusTint = (0.5, 0.25, 0.125)
+                bool inputs:shadow:enable = 0
+                color3f inputs:shadow:color = (0.25, 0.5, 0.75)
+                float inputs:shadow:distance = 200
+                float inputs:shadow:falloff.timeSamples = { 0: 50, 10: 150 }
+                float inputs:shadow:falloffGamma = 2
+            }
+            def DiskLight "Mean" (prepend apiSchemas = ["ShapingAPI", "ShadowAPI"]) {
+                asset inputs:shaping:ies:file = @./cosine.ies@
+                bool inputs:shaping:ies:normalize = 1
+                float inputs:shadow:falloff = 50
+            }
+            def DomeLight "Shaded" (prepend apiSchemas = ["ShadowAPI"]) { float inputs:shadow:distance = 7 }
+            def PortalLight "Door" (prepend apiSchemas = ["ShadowAPI"]) {
+                float3 xformOp:scale = (1, 3, 1)
+                uniform token[] xformOpOrder = ["xformOp:scale"]
+                float inputs:width = 3
+                float inputs:height = 2
+            }
+            def PortalLight "Window" {}
+            def Material "Look" {
+                color3f inputs:tint.timeSamples = { 0: (1, 0, 0), 10: (0, 1, 0.5) }
+                token outputs:surface.connect = </Rig/Look/S.outputs:surface>
+                def Shader "S" { uniform token info:id = "UsdPreviewSurface"
+                    color3f inputs:emissiveColor = (1, 2, 4)
+                    token outputs:surface
+                }
+                def SphereLight "Connected" {
+                    color3f inputs:color.connect = </Rig/Look.inputs:tint>
+                    float inputs:intensity = 3
+                }
+            }
+            def Mesh "Glow" (prepend apiSchemas = ["MeshLightAPI", "MaterialBindingAPI"]) {
+                rel material:binding = </Rig/Look>
+                float inputs:intensity = 3
+                bool inputs:normalize = 1
+        """ + FLAT + """}
+            def Mesh "Alone" (prepend apiSchemas = ["MeshLightAPI", "MaterialBindingAPI", "ShadowAPI"]) {
+                rel material:binding = </Rig/Look>
+                uniform token light:materialSyncMode = "independent"
+                color3f inputs:shadow:color = (1, 0.5, 0)
+        """ + FLAT + """}
+            def Sphere "Ball" (prepend apiSchemas = ["LightAPI"]) {
+                color3f inputs:color.timeSamples = { 0: (1, 0, 0), 10: (0, 1, 0.5) }
+            }
+            def Mesh "Lit" {""" + FLAT + """}
+            def GeometryLight "Old" { rel geometry = </Rig/Lit>
+                float inputs:exposure = 2
+                bool inputs:normalize = 1
+            }
             def Camera "Cam" {
                 float horizontalApertureOffset = 3
                 float verticalApertureOffset = -2
@@ -681,6 +789,7 @@ CASES = {
             def Camera "Flat" { token projection = "orthographic"; float2 clippingRange = (0.5, 60) }
         }
         """,
+        "cosine.ies": COSINE,
     },
 }
 

@@ -1,21 +1,24 @@
 """Looks of stages as Penumbra reads them, against OpenUSD itself (usd-core): inputs of UsdPreviewSurface and their
 textures, UV sets, displayColor, normals, faces of subsets, links of lights, the settings of the render."""
 
-import os
+import struct
+import zlib
 
 import numpy as np
 import pytest
 
 pytest.importorskip("pxr", reason="usd-core is not installed")
+import test_usd_core  # noqa: E402
 import usd_looks  # noqa: E402
+import usd_shading  # noqa: E402
 from pxr import Tf, UsdLux, UsdShade  # noqa: E402
 from test_usd_core import ASSETS, NOT_JUDGED, STAGES, Answer, Differences, near, read, rows  # noqa: E402
 from usd_judge import Stage  # noqa: E402
 
 
-def judge(path):
-    """All differences in looks between Penumbra and OpenUSD at the stage `path`."""
-    stage, info, found = Stage(path), read(path), Differences()
+def judge(path, info=None):
+    """All differences in looks between Penumbra, which said `info`, and OpenUSD at the stage `path`."""
+    stage, info, found = Stage(path), info or read(path), Differences()
     answer, values = Answer(info), info["values"]
     materials = {material["place"]: material for material in values["materials"]}
     for prim in stage.gprims():
@@ -32,27 +35,11 @@ def judge(path):
 
 
 def judge_material(stage, prim, material, answer, found):
-    path, shader = str(prim.GetPath()), usd_looks.preview_surface(stage, prim)
-    if shader is None:
-        return
-    specular = shader.GetInput("useSpecularWorkflow")
-    for ours, name, fallback in usd_looks.PREVIEW:
-        if ours == "metallic" and specular and specular.Get(stage.time):
-            continue
-        expected, mine = usd_looks.value_or_texture(stage, shader, name, fallback), material[ours]
-        if expected is None or mine["graph"] or answer.warned(str(shader.GetPath())):
-            continue
-        if expected[0] == "value":
-            same = mine["texture"] is None and near(np.atleast_1d(mine["factor"]), expected[1])
-            found.check(same, path, f"{name} is {mine}, not {expected[1]}")
-            continue
-        _, file, _ = expected
-        image = (mine["texture"] or {}).get("image") or ""
-        tiled = "<UDIM>" in file
-        # Alpha of a picture that has none.
-        if name == "opacity" and file.endswith("jpg") and mine == {"factor": 1.0, "texture": None, "graph": False}:
-            continue
-        found.check(os.path.basename(image) == file or tiled, path, f"{name} is the image {image}, not {file}")
+    shader = usd_looks.preview_surface(stage, prim)
+    # What was told of one of its nodes may have changed any input.
+    if shader and not any(f", {prim.GetPath()}" in warning for warning in answer.warnings):
+        check = lambda ok, what: found.check(ok, str(prim.GetPath()), what)
+        usd_shading.judge(stage, shader, material, test_usd_core.near, check)
 
 
 def judge_mesh(stage, prim, instance, materials, answer, found):
@@ -267,3 +254,168 @@ def test_every_kind_of_look(tmp_path):
     parts = next(i for i in described["instances"] if i["place"] == "/Parts")
     assert described["meshes"][parts["mesh"]]["material_slots"] == [0, 0, 1]
     assert (kind, tint.tolist()) == ("value", [0.25, 0.5, 0.75])
+
+
+SHADES = """#usda 1.0
+def Material "Metal" {
+    token outputs:surface.connect = </Metal/S.outputs:surface>
+    token inputs:wrap = "mirror"
+    def Shader "S" {
+        uniform token info:id = "UsdPreviewSurface"
+        float inputs:ior = 1.75
+        float inputs:clearcoat = 0.5
+        float inputs:clearcoatRoughness = 0.25
+        float inputs:opacity.connect = </Metal/Map.outputs:a>
+        float inputs:opacityThreshold = 0.125
+        float inputs:occlusion.connect = </Metal/Map.outputs:r>
+        color3f inputs:diffuseColor.connect = </Metal/Map.outputs:rgb>
+        float inputs:roughness.connect = </Metal/Scaled.outputs:g>
+        normal3f inputs:normal.connect = </Metal/Bump.outputs:rgb>
+        token outputs:surface
+    }
+    def Shader "Map" {
+        uniform token info:id = "UsdUVTexture"
+        asset inputs:file = @./map.png@
+        token inputs:wrapS = "clamp"
+        token inputs:wrapT.connect = </Metal.inputs:wrap>
+        token inputs:sourceColorSpace = "raw"
+        float2 inputs:st.connect = </Metal/Turn.outputs:result>
+        float3 outputs:rgb
+        float outputs:r
+        float outputs:a
+    }
+    def Shader "Scaled" {
+        uniform token info:id = "UsdUVTexture"
+        asset inputs:file = @./map.png@
+        token inputs:wrapS = "black"
+        token inputs:wrapT = "repeat"
+        token inputs:sourceColorSpace = "sRGB"
+        float4 inputs:scale = (0.5, 0.25, 1, 1)
+        float4 inputs:bias = (0, 0.5, 0, 0)
+        float2 inputs:st.connect = </Metal/Read.outputs:result>
+        float outputs:g
+    }
+    def Shader "Bump" {
+        uniform token info:id = "UsdUVTexture"
+        asset inputs:file = @./map.png@
+        token inputs:sourceColorSpace = "raw"
+        float4 inputs:scale = (1.5, 1.5, 2, 1)
+        float4 inputs:bias = (-0.75, -0.75, -1, 0)
+        float2 inputs:st.connect = </Metal/Read.outputs:result>
+        float3 outputs:rgb
+    }
+    def Shader "Turn" {
+        uniform token info:id = "UsdTransform2d"
+        float2 inputs:in.connect = </Metal/Read.outputs:result>
+        float inputs:rotation = 30
+        float2 inputs:scale = (2, 3)
+        float2 inputs:translation = (0.25, 0.75)
+        float2 outputs:result
+    }
+    def Shader "Read" {
+        uniform token info:id = "UsdPrimvarReader_float2"
+        string inputs:varname = "st"
+        float2 outputs:result
+    }
+}
+def Material "Specular" {
+    token outputs:surface.connect = </Specular/S.outputs:surface>
+    def Shader "S" {
+        uniform token info:id = "UsdPreviewSurface"
+        int inputs:useSpecularWorkflow = 1
+        color3f inputs:specularColor = (0.25, 0.02, 0.5)
+        float inputs:metallic = 1
+        float inputs:opacity = 0.625
+        token outputs:surface
+    }
+}
+def Material "Faded" {
+    token outputs:surface.connect = </Faded/S.outputs:surface>
+    def Shader "S" {
+        uniform token info:id = "UsdPreviewSurface"
+        float inputs:opacity = 0.375
+        token inputs:opacityMode = "presence"
+        color3f inputs:emissiveColor = (1, 2, 3)
+        float inputs:metallic = 0.75
+        token outputs:surface
+    }
+}
+def Xform "Shown" {
+    def Mesh "A" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        rel material:binding = </Metal>
+        MESH
+    }
+    def Mesh "B" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        rel material:binding = </Specular>
+        MESH
+    }
+    def Mesh "C" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        rel material:binding = </Faded>
+        MESH
+    }
+}
+""".replace(
+    "MESH",
+    """int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+        texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1)] (interpolation = "vertex")
+        uniform token subdivisionScheme = "none\"""",
+)
+
+# Each of these is another look.
+CHANGES = [
+    ("ior = 1.75", "ior = 1.5"),
+    ("clearcoat = 0.5", "clearcoat = 0.25"),
+    ("clearcoatRoughness = 0.25", "clearcoatRoughness = 0.5"),
+    ("opacityThreshold = 0.125", "opacityThreshold = 0.5"),
+    ("float inputs:occlusion.connect = </Metal/Map.outputs:r>", ""),
+    ("occlusion.connect = </Metal/Map.outputs:r>", "occlusion.connect = </Metal/Map.outputs:a>"),
+    ("diffuseColor.connect = </Metal/Map.outputs:rgb>", "diffuseColor = (1, 0, 0)"),
+    ("normal3f inputs:normal.connect = </Metal/Bump.outputs:rgb>", ""),
+    ("bias = (-0.75, -0.75, -1, 0)", "bias = (-0.75, -0.5, -1, 0)"),
+    ("bias = (0, 0.5, 0, 0)", "bias = (0, 0.25, 0, 0)"),
+    ("scale = (0.5, 0.25, 1, 1)", "scale = (0.5, 0.5, 1, 1)"),
+    ('wrapS = "clamp"', 'wrapS = "repeat"'),
+    ('inputs:wrap = "mirror"', 'inputs:wrap = "black"'),
+    ('wrapS = "black"', 'wrapS = "clamp"'),
+    ('"sRGB"', '"raw"'),
+    ("rotation = 30", "rotation = 31"),
+    ("scale = (2, 3)", "scale = (2, 2)"),
+    ("translation = (0.25, 0.75)", "translation = (0.25, 0.5)"),
+    ("specularColor = (0.25, 0.02, 0.5)", "specularColor = (0.25, 0.02, 0.25)"),
+    ("useSpecularWorkflow = 1", "useSpecularWorkflow = 0"),
+    ("opacity = 0.625", "opacity = 0.5"),
+    ("opacity = 0.625", "opacity = 1"),
+    ("opacity = 0.375", "opacity = 0.5"),
+    ('"presence"', '"transparent"'),
+    ("emissiveColor = (1, 2, 3)", "emissiveColor = (1, 2, 4)"),
+    ("metallic = 0.75", "metallic = 0.5"),
+]
+
+
+@pytest.fixture(scope="module")
+def shades(tmp_path_factory):
+    """The stage of `SHADES`, and what Penumbra says of it."""
+    folder = tmp_path_factory.mktemp("shades")
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    head, line = struct.pack(">IIBBBBB", 1, 1, 8, 6, 0, 0, 0), bytes([0, 51, 102, 153, 204])
+    png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(line)) + chunk(b"IEND", b"")
+    (folder / "map.png").write_bytes(png)
+    (folder / "shades.usda").write_text(SHADES)
+    return folder, read(folder / "shades.usda")
+
+
+def test_every_input_of_usd_preview_surface(shades):
+    folder, info = shades
+    assert not info["warnings"]
+    found = judge(folder / "shades.usda", info)
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change[0])
+def test_another_input_of_usd_preview_surface_is_a_difference(shades, change):
+    folder, info = shades
+    assert change[0] in SHADES
+    (folder / "changed.usda").write_text(SHADES.replace(*change, 1))
+    assert judge(folder / "changed.usda", info)

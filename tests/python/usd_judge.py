@@ -4,13 +4,23 @@ Matrices are those of USD, for row vectors: the rows are the images of the axes 
 """
 
 import math
+import os
 
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel, Vt
 from usd_looks import corner_values
 
 Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
-LIGHTS = ("SphereLight", "DiskLight", "RectLight", "CylinderLight", "DistantLight", "DomeLight", "DomeLight_1")
+LIGHTS = (
+    "SphereLight",
+    "DiskLight",
+    "RectLight",
+    "CylinderLight",
+    "DistantLight",
+    "DomeLight",
+    "DomeLight_1",
+    "PortalLight",
+)
 
 
 BASES = {
@@ -33,6 +43,20 @@ def along_piece(values, basis, wrap, k, t):
 
     points = np.array([at(first + i) for i in range(len(matrix))])
     return np.vander(t, len(matrix), increasing=True) @ matrix @ points
+
+
+def candela(path):
+    """The largest candela of an IES profile (LM-63), and their mean over the sphere, or over the half that they are
+    in, by the trapezoid rule along the angles from the axis. Only of profiles that are the same all around."""
+    text = open(path).read()
+    numbers = text[text.index("TILT=NONE") + len("TILT=NONE") :].replace(",", " ").split()
+    factor, rows, columns, ballast = float(numbers[2]), int(numbers[3]), int(numbers[4]), float(numbers[10])
+    assert columns == 1, f"{path} is not the same all around"
+    values = np.array(numbers[13:], float)
+    angles, candela = np.radians(values[:rows]), values[rows + 1 : 2 * rows + 1] * factor * ballast
+    sine = candela * np.sin(angles)
+    flux = 2 * math.pi * ((sine[1:] + sine[:-1]) / 2 * np.diff(angles)).sum()
+    return candela.max(), flux / (2 * math.pi * (np.cos(angles[0]) - np.cos(angles[-1])))
 
 
 class Stage:
@@ -333,17 +357,36 @@ class Stage:
 
     # Lights
 
+    def given(self, prim, name):
+        """An input of `prim`: its own value, or that of the input that it is connected to."""
+        attribute = prim.GetAttribute(name)
+        found = UsdShade.Input(attribute).GetValueProducingAttributes() if attribute.HasAuthoredConnections() else []
+        value = found[0].Get(self.time) if found and found[0].GetName().startswith("inputs:") else None
+        return attribute.Get(self.time) if value is None else value
+
+    def emission(self, prim):
+        """Intensity, exposure, color and temperature."""
+        get = lambda name: self.given(prim, name)
+        emission = np.array(get("inputs:color"), dtype=float)
+        emission *= get("inputs:intensity") * 2.0 ** get("inputs:exposure")
+        kelvin = get("inputs:colorTemperature")
+        if get("inputs:enableColorTemperature") and not (self.blender and kelvin == 6500):
+            emission *= np.array(UsdLux.BlackbodyTemperatureAsRgb(kelvin))
+        return emission
+
     def light(self, prim):
         """Kind, sizes and emission by the formulas of UsdLux's documentation; without its transform."""
-        get = lambda name: prim.GetAttribute(name).Get(self.time)
-        api = UsdLux.LightAPI(prim)
-        value = lambda attribute: attribute.Get(self.time)
-        emission = np.array(value(api.GetColorAttr()), dtype=float)
-        emission *= value(api.GetIntensityAttr()) * 2.0 ** value(api.GetExposureAttr())
-        kelvin = value(api.GetColorTemperatureAttr())
-        if value(api.GetEnableColorTemperatureAttr()) and not (self.blender and kelvin == 6500):
-            emission *= np.array(UsdLux.BlackbodyTemperatureAsRgb(kelvin))
-        normalize, kind = value(api.GetNormalizeAttr()), prim.GetTypeName()
+        get = lambda name: self.given(prim, name)
+        emission, kind = self.emission(prim), prim.GetTypeName()
+        if kind not in ("DistantLight", "DomeLight", "DomeLight_1"):
+            emission *= (self.ies(prim) or (None, None, 1.0))[2]
+        normalize = get("inputs:normalize")
+        if kind == "PortalLight":
+            # Its sizes are no part of the schema.
+            sizes = [get(f"inputs:{name}") for name in ("width", "height") if prim.HasAttribute(f"inputs:{name}")]
+            x, y = (np.linalg.norm(self.world(prim)[i, :3]) for i in range(2))
+            width, height = sizes if len(sizes) == 2 else (1.0, 1.0)
+            return {"kind": "portal", "width": width * x, "height": height * y}
         if kind in ("DomeLight", "DomeLight_1"):
             return {"kind": "dome", "radiance": emission}
         if kind == "DistantLight":
@@ -400,12 +443,81 @@ class Stage:
         return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
     def shaping(self, prim):
-        """Cone angle and softness, focus; `None` where ShapingAPI is not applied."""
+        """Cone angle and softness, focus and its tint; `None` where ShapingAPI is not applied."""
+        if not prim.HasAPI(UsdLux.ShapingAPI):
+            return None
+        get = lambda name: self.given(prim, f"inputs:shaping:{name}")
+        return get("cone:angle"), get("cone:softness"), get("focus"), np.array(get("focusTint"), float)
+
+    def ies(self, prim):
+        """File, angleScale, and what the profile multiplies emission by; `None` without one."""
         if not prim.HasAPI(UsdLux.ShapingAPI):
             return None
         api = UsdLux.ShapingAPI(prim)
-        cone = api.GetShapingConeAngleAttr().Get(self.time), api.GetShapingConeSoftnessAttr().Get(self.time)
-        return *cone, api.GetShapingFocusAttr().Get(self.time)
+        file = api.GetShapingIesFileAttr().Get(self.time)
+        if not file or not os.path.isfile(file.resolvedPath):
+            return None
+        peak, mean = candela(file.resolvedPath)
+        normalized = api.GetShapingIesNormalizeAttr().Get(self.time)
+        scale = api.GetShapingIesAngleScaleAttr().Get(self.time)
+        return os.path.basename(file.path), scale, peak / mean if normalized else peak
+
+    def shadow(self, prim):
+        """Whether the light casts shadows and how they look: color, distance, falloff and its gamma, in metres."""
+        without = [0.0, 0.0, 0.0], math.inf, 0.0, 1.0
+        if not prim.HasAPI(UsdLux.ShadowAPI):
+            return True, without
+        get = lambda name: self.given(prim, f"inputs:shadow:{name}")
+        distance, falloff = get("distance"), get("falloff")
+        if distance < 0:
+            # Shadows that end nowhere do not fall off.
+            return get("enable"), (np.array(get("color"), float), *without[1:])
+        falloff = falloff * self.meters if falloff >= 0 else 0.0
+        return get("enable"), (np.array(get("color"), float), distance * self.meters, falloff, get("falloffGamma"))
+
+    def shining(self):
+        """The shapes that are lights: their path, the light, and whether it is of the shape itself."""
+        found = {}
+        for prim in self.prims():
+            if prim.IsA(UsdGeom.Gprim) and prim.HasAPI(UsdLux.LightAPI) and not prim.HasAPI(UsdLux.VolumeLightAPI):
+                found[prim.GetPath()] = (prim, True)
+        for prim in self.of_type("GeometryLight"):
+            targets = prim.GetRelationship("geometry").GetForwardedTargets()
+            if targets and self.visible(prim):
+                found[targets[0]] = (prim, False)
+        return found
+
+    def glow(self, light, shape, own):
+        """What a shape that is a light emits, and whether it has nothing of its material; `None` where that is not
+        said. The area is that of a mesh alone."""
+        emission = self.emission(light) * (self.ies(light) or (None, None, 1.0))[2]
+        if self.given(light, "inputs:normalize"):
+            if shape.GetTypeName() != "Mesh" or not (faces := self.faces(shape)):
+                return None
+            emission = emission / self.area(shape, faces)
+        mode = light.GetAttribute("light:materialSyncMode").Get() if own else "noMaterialResponse"
+        bound = self.bound(shape)
+        if mode == "noMaterialResponse" or bound is None:
+            return emission, True
+        if mode == "independent":
+            return emission, False
+        surface = UsdShade.Material(bound).ComputeSurfaceSource("")[0]
+        glow = surface.GetInput("emissiveColor") if surface else None
+        glow = glow.GetValueProducingAttributes() if glow else []
+        if not glow or not glow[0].GetName().startswith("inputs:") or not any(glow[0].Get(self.time)):
+            return None
+        return emission * np.array(glow[0].Get(self.time), float), False
+
+    def area(self, shape, faces):
+        """Of the faces of a mesh in the world, in square units of the stage; faces are flat."""
+        points, kept = faces
+        world = np.array(self.xforms.GetLocalToWorldTransform(shape))
+        at = points.astype(float) @ world[:3, :3]
+        area = 0.0
+        for _, corners in kept:
+            fan = at[corners[1:]] - at[corners[0]]
+            area += 0.5 * np.linalg.norm(np.cross(fan[:-1], fan[1:]).sum(axis=0))
+        return area
 
     # Cameras
 

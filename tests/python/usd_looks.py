@@ -6,14 +6,6 @@ import os
 import numpy as np
 from pxr import Usd, UsdGeom, UsdLux, UsdRender, UsdShade
 
-# Constants of UsdPreviewSurface: our input, theirs, its fallback.
-PREVIEW = [
-    ("base_color", "diffuseColor", (0.18, 0.18, 0.18)),
-    ("metallic", "metallic", 0.0),
-    ("roughness", "roughness", 0.5),
-    ("emission", "emissiveColor", (0.0, 0.0, 0.0)),
-    ("alpha", "opacity", 1.0),
-]
 CONFORM = {
     "expandAperture": "expand",
     "cropAperture": "crop",

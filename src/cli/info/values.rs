@@ -113,7 +113,7 @@ fn attribute<T: serde::Serialize>(attribute: &Attribute<T>) -> Value {
 fn instance(instance: &InstanceDesc, scene: &SceneDesc) -> Value {
     let material = |index: &Option<u32>| {
         let material = &scene.materials[(*index)? as usize];
-        Some(json!({ "name": &*material.name, "place": node(&material.place) }))
+        Some(json!({ "index": index, "name": &*material.name, "place": node(&material.place) }))
     };
     json!({
         "name": &*instance.name,

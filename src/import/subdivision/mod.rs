@@ -226,4 +226,6 @@ impl Refinement {
 }
 
 #[cfg(test)]
+mod published;
+#[cfg(test)]
 mod tests;

@@ -53,7 +53,8 @@ impl Extent {
         let (Some(frame), Some([first, last])) = (self.frame, self.met.get()) else { return };
         if first < last && (frame < first || frame > last) {
             let what = "the stage names no range, and what it has samples of";
-            warnings.push(place, format!("frame {frame}: {what} has them from {first} to {last}; the nearest are held"));
+            warnings
+                .push(place, format!("frame {frame}: {what} has them from {first} to {last}; the nearest are held"));
         }
     }
 }
