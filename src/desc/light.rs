@@ -164,7 +164,7 @@ pub struct DomeSun {
 pub struct ShapingDesc {
     /// A cone outside of which there is no light.
     pub cone: Option<ConeDesc>,
-    /// UsdLux focus: the factor `max(cos θ, 0)^focus`; 0 for none.
+    /// UsdLux focus: the factor `|cos θ|^focus`, to both sides; 0 for none.
     pub focus: f64,
     /// UsdLux focus tint: the colour that the factor fades to instead of black.
     pub focus_tint: [f64; 3],

@@ -40,7 +40,7 @@ pub struct Shaping {
     /// Light to render space with its scale, for a cone that the scale distorts (Cycles' spot); not
     /// singular, of the order of 1.
     pub stretch: Option<DMat3>,
-    /// UsdLux focus: the factor `max(cos θ, 0)^focus`; 0 for none.
+    /// UsdLux focus: the factor `|cos θ|^focus`; 0 for none.
     pub focus: f64,
     /// UsdLux focus tint: the colour that the factor fades to.
     pub focus_tint: [f64; 3],
@@ -101,9 +101,6 @@ impl Profile {
     fn find_cone(&mut self, axes: DMat3) {
         let shaping = &self.shaping;
         let (mut from, mut to) = (0.0_f64, PI);
-        if shaping.focus > 0.0 && shaping.focus_tint == [0.0; 3] {
-            to = to.min(FRAC_PI_2);
-        }
         if let Some([low, high]) = shaping.ies.as_ref().map(Ies::support) {
             (from, to) = (from.max(low), to.min(high));
         }
@@ -167,7 +164,7 @@ impl Profile {
         if shaping.focus == 0.0 {
             return Rgb::splat(factor as f32);
         }
-        let focus = off_axis.cos.max(0.0).powf(shaping.focus);
+        let focus = off_axis.cos.abs().powf(shaping.focus);
         Rgb::from(shaping.focus_tint.map(|tint| factor * (tint + (1.0 - tint) * focus)))
     }
 
@@ -261,8 +258,9 @@ impl Profile {
 
     /// Angles off the axis, growing from 0 to π, between which the factor is smooth.
     fn edges(&self) -> Vec<f64> {
-        // A focus can be sharp: steps that halve towards the axis see it.
-        let mut edges: Vec<f64> = (0..12).map(|k| FRAC_PI_2 / f64::from(1 << k)).chain([0.0, PI]).collect();
+        // A focus can be sharp: steps that halve towards the axis see it, on both sides.
+        let near = (0..12).map(|k| FRAC_PI_2 / f64::from(1 << k)).chain([0.0]);
+        let mut edges: Vec<f64> = near.flat_map(|edge| [edge, PI - edge]).collect();
         edges.extend(self.shaping.cone.iter().flat_map(Cone::edges));
         edges.extend(self.shaping.ies.iter().flat_map(Ies::edges));
         edges.retain(|edge| (0.0..=PI).contains(edge));

@@ -222,7 +222,8 @@ fn focus_and_tint_are_those_of_usd() {
     let profile = Profile::new(DMat3::IDENTITY, shaping, Decay::PHYSICAL);
     for i in 0..=36 {
         let theta = PI * f64::from(i) / 36.0;
-        let focus = theta.cos().max(0.0).powi(3);
+        // Behind as well as in front.
+        let focus = theta.cos().abs().powi(3);
         let factor = profile.factor(Vec3::new(theta.sin() as f32, 0.0, -theta.cos() as f32), 1.0);
         for (found, expected) in factor.to_array().into_iter().zip([0.25 + 0.75 * focus, focus, 1.0]) {
             assert!((f64::from(found) - expected).abs() < 1e-6, "{theta}");

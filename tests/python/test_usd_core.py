@@ -754,10 +754,10 @@ CASES = {
                     color3f inputs:emissiveColor = (1, 2, 4)
                     token outputs:surface
                 }
-                def SphereLight "Connected" {
-                    color3f inputs:color.connect = </Rig/Look.inputs:tint>
-                    float inputs:intensity = 3
-                }
+            }
+            def SphereLight "Connected" {
+                color3f inputs:color.connect = </Rig/Look.inputs:tint>
+                float inputs:intensity = 3
             }
             def Mesh "Glow" (prepend apiSchemas = ["MeshLightAPI", "MaterialBindingAPI"]) {
                 rel material:binding = </Rig/Look>

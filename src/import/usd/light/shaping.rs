@@ -26,9 +26,6 @@ pub(super) fn of(values: &Values<'_>, flat: bool, profiles: &mut Profiles) -> (S
     // Below 0 it is ignored.
     let focus = values.number("inputs:shaping:focus").unwrap_or(0.0).max(0.0);
     let focus_tint = if focus > 0.0 { values.color("inputs:shaping:focusTint").unwrap_or_default() } else { [0.0; 3] };
-    if focus > 0.0 && !flat && widest(cone) > 90.001 {
-        values.warn("focus: nothing shines backwards, out of the part of the cone beyond 90 degrees");
-    }
     let ies = values.asset("inputs:shaping:ies:file").and_then(|file| profiles.load(values, &file));
     let (ies, factor) = ies.map_or((None, 1.0), |(ies, factor)| (Some(ies), factor));
     (ShapingDesc { cone, focus, focus_tint, ies, shader: None }, factor)
@@ -45,14 +42,4 @@ fn cone(values: &Values<'_>, flat: bool) -> Option<ConeDesc> {
     // Blender writes Cycles' spot blend as softness.
     let blender = values.reading.blender;
     Some(if blender { ConeDesc::Blend { angle, blend: softness } } else { ConeDesc::Soft { angle, softness } })
-}
-
-/// Half angle in degrees.
-fn widest(cone: Option<ConeDesc>) -> f64 {
-    match cone {
-        None => 180.0,
-        Some(ConeDesc::Blend { angle, .. } | ConeDesc::Soft { angle, .. } | ConeDesc::Ramp { outer: angle, .. }) => {
-            angle.to_degrees()
-        }
-    }
 }

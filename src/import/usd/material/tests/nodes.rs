@@ -2,6 +2,7 @@
 
 use super::super::super::images::tests::png;
 use super::*;
+use crate::desc::AlphaMode;
 use crate::desc::graph::{Leaf, Noise, NoiseKind, Op as GraphOp, Procedural, Quantity, Space};
 
 const STANDARD: &str = "ND_standard_surface_surfaceshader";
