@@ -27,6 +27,17 @@ def fallback(node, name):
     return Sdr.Registry().GetShaderNodeByIdentifier(node).GetShaderInput(name).GetDefaultValue()
 
 
+def texel(path):
+    """What the image holds: without a channel for it, alpha is 1."""
+    if path.lower().endswith((".jpg", ".jpeg")):
+        return np.append(TEXEL[:3], 1)
+    if path.lower().endswith(".png"):
+        with open(path, "rb") as file:
+            head = file.read(26)
+        return np.append(TEXEL[:3], 1) if head[25] in (0, 2) else TEXEL
+    return TEXEL
+
+
 def numbers(value):
     return np.atleast_1d(np.array(value, dtype=float))
 
@@ -72,7 +83,7 @@ class Wanted:
         wrap = [WRAPS[self.constant(texture, key)] for key in ("wrapS", "wrapT")]
         space = SPACES.get(self.constant(texture, "sourceColorSpace"))
         picture = Picture(os.path.basename(path.path), [at[0], 1 - at[1]], wrap, space)
-        return (scale * TEXEL + bias)[places], picture
+        return (scale * texel(path.resolvedPath) + bias)[places], picture
 
     def coordinates(self, shader, name, depth=0):
         """Where an input of coordinates is; which primvar they are of is seen at meshes."""
