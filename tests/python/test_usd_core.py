@@ -79,9 +79,9 @@ class Differences(list):
             self.append(f"{path}: {what}")
 
 
-def judge(path, *args, frame=None, interpolation=None):
-    """All differences between Penumbra and OpenUSD at the stage `path`."""
-    stage, answer, found = Stage(path, frame, interpolation), Answer(read(path, *args)), Differences()
+def judge(path, *args, frame=None, interpolation=None, info=None):
+    """All differences between Penumbra, which said `info`, and OpenUSD at the stage `path`."""
+    stage, answer, found = Stage(path, frame, interpolation), Answer(info or read(path, *args)), Differences()
     judge_shapes(stage, answer, found)
     judge_lights(stage, answer, found)
     judge_cameras(stage, answer, found)
@@ -296,6 +296,7 @@ def judge_lights(stage, answer, found):
         for key, value in expected.items():
             same = kind[key] == value if key == "kind" else key in kind and near(kind[key], value, tolerance)
             found.check(same, path, f"{key} is {kind.get(key)}, not {value}")
+        judge_image(stage, prim, kind, found)
         matrix = np.reshape(light["matrix"], (4, 4))
         if kind["kind"] == "dome":
             # Ours: the centre is +x, the left quarter −z, the top +y.
@@ -330,6 +331,14 @@ def judge_shaping(stage, prim, light, found):
     else:
         flat = light["kind"]["kind"] in ("rect", "disk")
         found.check(softness <= 0 and angle >= (90 if flat else 180), path, f"lost its cone of {angle} degrees")
+
+
+def judge_image(stage, prim, kind, found):
+    """The image of a light; domes whose image is not lat-long have one of that name that is."""
+    file = prim.GetAttribute("inputs:texture:file").Get(stage.time) if prim.HasAttribute("inputs:texture:file") else None
+    name = os.path.basename(file.path) if file and file.resolvedPath else None
+    ours = kind.get("image") and os.path.basename(kind["image"].rstrip("]").replace("[", "/"))
+    found.check(ours == name or not ours and not file, str(prim.GetPath()), f"shows {ours}, not {name}")
 
 
 def judge_ies(expected, ies, path, found):
@@ -794,15 +803,61 @@ CASES = {
 }
 
 
+def write(folder, files):
+    for file, text in files.items():
+        # One statement a line, as usda wants it.
+        (folder / file).write_text(text.replace("{ ", "{\n").replace("} ", "}\n").replace(" }", "\n}"))
+
+
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("frame", [None, 4.5, 9])
 def test_cases_are_read_as_openusd_reads_them(tmp_path, name, frame):
-    for file, text in CASES[name].items():
-        # One statement a line, as usda wants it.
-        (tmp_path / file).write_text(text.replace("{ ", "{\n").replace("} ", "}\n").replace(" }", "\n}"))
+    write(tmp_path, CASES[name])
     args = [] if frame is None else ["--frame", frame]
     found = judge(tmp_path / "root.usda", *args, frame=frame)
     assert not found, "\n".join(found)
+
+
+# Each of these is another light.
+OTHER_LIGHTS = [
+    ("focusTint = (0.5, 0.25, 0.125)", "focusTint = (0.5, 0.25, 0.25)"),
+    ("shaping:focus = 3", "shaping:focus = 4"),
+    ("angleScale = 0.25", "angleScale = 0.5"),
+    ("bool inputs:shaping:ies:normalize = 1", ""),
+    ("asset inputs:shaping:ies:file = @./cosine.ies@", ""),
+    ("bool inputs:shadow:enable = 0", ""),
+    ("shadow:color = (0.25, 0.5, 0.75)", "shadow:color = (0.25, 0.5, 0.5)"),
+    ("shadow:distance = 200", "shadow:distance = 201"),
+    ("shadow:falloff.timeSamples = { 0: 50", "shadow:falloff.timeSamples = { 0: 10"),
+    ("falloffGamma = 2", "falloffGamma = 3"),
+    ("shadow:distance = 7", "shadow:distance = 8"),
+    ("float inputs:width = 3", "float inputs:width = 4"),
+    ("tint.timeSamples = { 0: (1, 0, 0)", "tint.timeSamples = { 0: (1, 0, 1)"),
+    ("emissiveColor = (1, 2, 4)", "emissiveColor = (1, 2, 5)"),
+    ("float inputs:intensity = 3\n                bool inputs:normalize = 1\n        ", "float inputs:intensity = 3\n"),
+    ('"independent"', '"noMaterialResponse"'),
+    ("shadow:color = (1, 0.5, 0)", "shadow:color = (1, 0.5, 1)"),
+    ("inputs:color.timeSamples = { 0: (1, 0, 0)", "inputs:color.timeSamples = { 0: (1, 0, 1)"),
+    ("float inputs:exposure = 2", "float inputs:exposure = 3"),
+]
+
+
+@pytest.fixture(scope="module")
+def lit(tmp_path_factory):
+    """The case of lights, and what Penumbra says of it."""
+    folder = tmp_path_factory.mktemp("lit")
+    write(folder, CASES["lights"])
+    return folder, read(folder / "root.usda")
+
+
+@pytest.mark.parametrize("change", OTHER_LIGHTS, ids=lambda change: change[0])
+def test_another_light_is_a_difference(lit, change):
+    folder, info = lit
+    files = CASES["lights"]
+    assert change[0] in files["root.usda"]
+    write(folder, {"changed.usda": files["root.usda"].replace(*change, 1)})
+    assert judge(folder / "changed.usda", info=info)
+    assert not judge(folder / "root.usda", info=info)
 
 
 EXPORT = """
@@ -913,22 +968,14 @@ def test_blenders_lamps_come_back_as_cycles_has_them(blender, file):
         assert value(name, key) == pytest.approx(number, rel=1e-5), (name, key)
 
 
-@pytest.mark.parametrize("up", ["Y", "Z"])
-@pytest.mark.parametrize("dome", ["DomeLight", "DomeLight_1"])
-def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
-    """OpenEXR's lat-long maps: u = 0.5 - lon / 2 pi, v = 0.5 + lat / pi, lon = atan2(x, z), lat = asin(y)."""
+def assert_seen(folder, pixels, texel, toward, up="Y", dome="DomeLight", lines=""):
+    """Asserts that the one bright `texel` (row, column) of a dome of these `pixels` is seen by a camera that looks
+    `toward`, in the dome's own space; the dome is turned by 40 degrees about z."""
     oiio = pytest.importorskip("OpenImageIO")
-    width, height, column, row = 64, 32, 10, 8
-    pixels = np.full((height, width, 3), 0.01, np.float32)
-    pixels[row, column] = [0.0, 9.0, 0.0]
-    spec = oiio.ImageSpec(width, height, 3, "float")
-    image = oiio.ImageOutput.create(str(tmp_path / "sky.exr"))
-    assert image.open(str(tmp_path / "sky.exr"), spec) and image.write_image(pixels) and image.close()
-    lon = 2 * math.pi * (0.5 - (column + 0.5) / width)
-    lat = math.pi * (0.5 - (row + 0.5) / height)
-    toward = np.array([math.cos(lat) * math.sin(lon), math.sin(lat), math.cos(lat) * math.cos(lon)])
-    if dome == "DomeLight_1" and up == "Z":
-        toward = np.array([toward[0], -toward[2], toward[1]])
+    pixels[texel] = [0.0, 9.0, 0.0]
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "float")
+    image = oiio.ImageOutput.create(str(folder / "sky.exr"))
+    assert image.open(str(folder / "sky.exr"), spec) and image.write_image(pixels) and image.close()
     # About z by 40 degrees, with the light.
     sin, cos = math.sin(math.radians(40)), math.cos(math.radians(40))
     toward = np.array([cos * toward[0] - sin * toward[1], sin * toward[0] + cos * toward[1], toward[2]])
@@ -936,11 +983,12 @@ def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
     right /= np.linalg.norm(right)
     axes = np.array([right, np.cross(right, toward), -toward])
     matrix = ", ".join("({}, {}, {}, 0)".format(*axis) for axis in axes)
-    (tmp_path / "dome.usda").write_text(
+    (folder / "dome.usda").write_text(
         f"""#usda 1.0
         ( upAxis = "{up}" )
         def {dome} "Sky" {{
             asset inputs:texture:file = @./sky.exr@
+            {lines}
             float xformOp:rotateZ = 40
             uniform token[] xformOpOrder = ["xformOp:rotateZ"]
         }}
@@ -952,10 +1000,48 @@ def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
         }}
         """
     )
-    out = tmp_path / "out.exr"
-    command = [PENUMBRA, "render", tmp_path / "dome.usda", "-o", out, "--size", "33x33", "--spp", "1"]
+    out = folder / "out.exr"
+    command = [PENUMBRA, "render", folder / "dome.usda", "-o", out, "--size", "33x33", "--spp", "1"]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     picture = oiio.ImageInput.open(str(out)).read_image(0, 0, 0, 3, oiio.FLOAT)
     rows, columns = np.nonzero(picture[..., 1] > 0.5 * picture[..., 1].max())
     assert picture[16, 16, 1] > 6 and abs(rows.mean() - 16) < 1.5 and abs(columns.mean() - 16) < 1.5
+
+
+@pytest.mark.parametrize("up", ["Y", "Z"])
+@pytest.mark.parametrize("dome", ["DomeLight", "DomeLight_1"])
+def test_a_bright_texel_of_a_dome_is_seen_where_usd_has_it(tmp_path, up, dome):
+    """OpenEXR's lat-long maps: u = 0.5 - lon / 2 pi, v = 0.5 + lat / pi, lon = atan2(x, z), lat = asin(y)."""
+    width, height, column, row = 64, 32, 10, 8
+    lon = 2 * math.pi * (0.5 - (column + 0.5) / width)
+    lat = math.pi * (0.5 - (row + 0.5) / height)
+    toward = np.array([math.cos(lat) * math.sin(lon), math.sin(lat), math.cos(lat) * math.cos(lon)])
+    if dome == "DomeLight_1" and up == "Z":
+        toward = np.array([toward[0], -toward[2], toward[1]])
+    assert_seen(tmp_path, np.full((height, width, 3), 0.01, np.float32), (row, column), toward, up, dome)
+
+
+@pytest.mark.parametrize("format", ["automatic", "latlong", "mirroredBall", "angular", "cubeMapVerticalCross"])
+def test_a_bright_texel_of_a_dome_is_seen_where_its_format_has_it(tmp_path, format):
+    """UsdLux: the environment "reflected in a sphere, using an implicitly orthogonal projection"; the same with the
+    angle "mapped linearly" along the radius; the faces of a cube "laid out as a vertical cross". Seen as any camera of
+    USD looks, along -z with y up."""
+    if format in ("automatic", "latlong"):
+        shape, texel = (32, 64), (8, 10)
+        lon, lat = 2 * math.pi * (0.5 - 10.5 / 64), math.pi * (0.5 - 8.5 / 32)
+        toward = np.array([math.cos(lat) * math.sin(lon), math.sin(lat), math.cos(lat) * math.cos(lon)])
+    elif format == "cubeMapVerticalCross":
+        # The upper face, which joins the one ahead (+z) by its lower edge.
+        shape, texel = (128, 96), (10, 40)
+        x, down = 2 * (40.5 - 32) / 32 - 1, 2 * 10.5 / 32 - 1
+        toward = np.array([-x, 1.0, down])
+    else:
+        shape, texel = (64, 64), (20, 44)
+        x, y = 2 * 44.5 / 64 - 1, 1 - 2 * 20.5 / 64
+        radius = math.hypot(x, y)
+        angle = 2 * math.asin(radius) if format == "mirroredBall" else math.pi * radius
+        toward = np.array([x / radius * math.sin(angle), y / radius * math.sin(angle), math.cos(angle)])
+    lines = f'token inputs:texture:format = "{format}"'
+    toward = toward / np.linalg.norm(toward)
+    assert_seen(tmp_path, np.full((*shape, 3), 0.01, np.float32), texel, toward, lines=lines)
