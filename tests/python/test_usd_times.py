@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("pxr", reason="usd-core is not installed")
 from pxr import Sdf, Usd, UsdGeom  # noqa: E402
-from test_usd_core import Answer, judge, read  # noqa: E402
+from test_usd_core import CASES, Answer, judge, read, write  # noqa: E402
 from usd_judge import Stage  # noqa: E402
 
 HEAD = '#usda 1.0\n(\nmetersPerUnit = 1\nupAxis = "Y"\nstartTimeCode = 0\nendTimeCode = 40\ntimeCodesPerSecond = 10\n{}\n)\n'
@@ -410,3 +410,15 @@ def test_what_moves_within_the_shutter_moves_as_in_openusd(tmp_path, seed):
     answer = Answer(read(path, "--frame=5"))
     everything = [*answer.lights.values(), *answer.cameras.values(), *(i for all_ in answer.instances.values() for i in all_)]
     assert any(thing["motion"] for thing in everything), "nothing moves"
+
+
+@pytest.mark.parametrize("frame", [-7, 0, 4.5, 10, 33])
+@pytest.mark.parametrize("name", ["lights", "curves and points"])
+def test_frames_of_stages_without_a_range_are_held_at_the_ends(tmp_path, name, frame):
+    lines = ("    startTimeCode = 3\n", "    endTimeCode = 9\n")
+    files = {file: text.replace(lines[0], "").replace(lines[1], "") for file, text in CASES[name].items()}
+    write(tmp_path, files)
+    nothing_differs(tmp_path / "root.usda", frame=frame)
+    told = [warning for warning in read(tmp_path / "root.usda", f"--frame={frame}")["warnings"] if "no range" in warning]
+    outside = [f"frame {frame}: ", " from 0 to 10; "]
+    assert len(told) == (0 if 0 <= frame <= 10 else 1) and all(words in one for one in told for words in outside)
