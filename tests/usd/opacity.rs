@@ -109,7 +109,7 @@ const SMOOTH: &str = "float inputs:roughness = 0";
 fn a_clear_pane_mirrors_where_it_is_transparent_and_is_not_there_in_presence() {
     for degrees in [0.0, 60.0, 80.0] {
         let f = fresnel(degrees, 1.5);
-        let (above, below) = (plate(20.0), plate(-20.0));
+        let (above, below) = (plate(8.0), plate(-8.0));
         let at = |mode_of: &str, opacity: f64, world: &str| seen(&mode(mode_of, opacity, SMOOTH), degrees, world);
         close("passes, transparent", at("transparent", 0.0, &below), 1.0 - f, 2e-3);
         close("mirrors, transparent", at("transparent", 0.0, &above), f, 2e-3);
@@ -122,7 +122,7 @@ fn a_clear_pane_mirrors_where_it_is_transparent_and_is_not_there_in_presence() {
         close("mirrors by half, presence", at("presence", 0.5, &above), 0.5 * f, 1e-2);
     }
     // What nobody says is "transparent", the schema's fallback.
-    let unsaid = seen("float inputs:opacity = 0\nfloat inputs:roughness = 0", 60.0, &plate(20.0));
+    let unsaid = seen("float inputs:opacity = 0\nfloat inputs:roughness = 0", 60.0, &plate(8.0));
     close("unsaid", unsaid, fresnel(60.0, 1.5), 2e-3);
 }
 
@@ -148,13 +148,14 @@ fn nothing_is_gained_or_lost_at_a_clear_pane() {
     }
 }
 
-/// Microfacets that reflect a part lose some of what meets several of them, as those of the opaque surface do.
+/// Microfacets that reflect a part lose some of what meets several of them, as those of the opaque surface do: of half
+/// a mirror of roughness 0.5 it is 3.3 % at most.
 #[test]
 fn rough_reflections_with_a_color_lose_little_and_gain_nothing() {
     for degrees in [0.0, 60.0, 80.0] {
         let more = "int inputs:useSpecularWorkflow = 1\ncolor3f inputs:specularColor = (0.5, 0.5, 0.5)";
         let seen = seen(&mode("transparent", 0.0, more), degrees, FURNACE);
-        assert!((0.97..1.005).contains(&seen), "{degrees} degrees: {seen}");
+        assert!((0.965..1.005).contains(&seen), "{degrees} degrees: {seen}");
     }
 }
 
@@ -163,9 +164,9 @@ fn rough_reflections_with_a_color_lose_little_and_gain_nothing() {
 fn metal_fades() {
     let more = "float inputs:metallic = 1\nfloat inputs:roughness = 0";
     for (opacity, expected) in [(0.0, 1.0), (0.25, 0.75)] {
-        close("passes", seen(&mode("transparent", opacity, more), 30.0, &plate(-20.0)), expected, 2e-2);
+        close("passes", seen(&mode("transparent", opacity, more), 30.0, &plate(-8.0)), expected, 2e-2);
     }
-    close("mirrors", seen(&mode("transparent", 0.0, more), 30.0, &plate(20.0)), 0.0, 1e-5);
+    close("mirrors", seen(&mode("transparent", 0.0, more), 30.0, &plate(8.0)), 0.0, 1e-5);
 }
 
 /// Opacities of a shape are those of its material's, in both modes.
@@ -176,8 +177,8 @@ fn a_material_that_shows_opacities_of_shapes_is_clear_as_they_say() {
     let primvars = "float[] primvars:displayOpacity = [0.25]\ncolor3f[] primvars:displayColor = [(0, 0, 0)]";
     let f = fresnel(60.0, 1.5);
     for lines in [lines, &colored] {
-        close("passes", scene_of(lines, 60.0, &plate(-20.0), primvars, 16384), 0.75 * (1.0 - f), 3e-3);
-        close("mirrors", scene_of(lines, 60.0, &plate(20.0), primvars, 16384), f, 3e-3);
+        close("passes", scene_of(lines, 60.0, &plate(-8.0), primvars, 16384), 0.75 * (1.0 - f), 3e-3);
+        close("mirrors", scene_of(lines, 60.0, &plate(8.0), primvars, 16384), f, 3e-3);
     }
 }
 
