@@ -37,7 +37,14 @@ pub(super) fn joined(layers: Vec<Layer>) -> Vec<Layer> {
             None => {
                 let coverage = vec![pairs.map(Vec::from).collect()];
                 let names = super::Names { pass: stem, ..layer.names };
-                result.push(Layer { names, channels: Vec::new(), mean: Vec::new(), coverage, is_color: false, ..layer });
+                result.push(Layer {
+                    names,
+                    channels: Vec::new(),
+                    mean: Vec::new(),
+                    coverage,
+                    is_color: false,
+                    ..layer
+                });
             }
         }
     }
