@@ -336,9 +336,6 @@ def left_out(folder):
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
     material.displacement_method = "BOTH"
-    pointed = tree.nodes.new("ShaderNodeNewGeometry")
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    tree.links.new(pointed.outputs["Pointiness"], shader.inputs["Base Color"])
     bpy.context.scene.cycles.use_fast_gi = True
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(material)
