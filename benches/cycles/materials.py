@@ -4,7 +4,8 @@
     target/test-venv/bin/python benches/cycles/materials.py      # builds the add-on, renders, writes the page
 
 `--wheel FILE` takes a wheel that is built already, `--samples` and `--size` say how well the spheres are rendered,
-`--threads` how many threads each engine has; `--only furnace` or `--only spheres` prints that part and writes nothing.
+`--threads` how many threads each engine has; `--only furnace` or `--only spheres` prints that part and writes nothing,
+and so does `--row NAME` for some rows of spheres.
 Exits with 1 where the two disagree.
 
 White furnace: tilted squares seen by nobody but the camera, one for each material and angle of view, before a world of
@@ -225,7 +226,10 @@ def main():
     parser.add_argument("--size", type=int, default=12)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--only", choices=("furnace", "spheres"))
+    parser.add_argument("--row", action="append", choices=[name for name, _ in material_cases.rows()])
     options = parser.parse_args()
+    if options.row:
+        options.only = "spheres"
     engine = addon.register(options.wheel or addon.wheel(options.profile))
     begun, furnaces, grid, wrong = time.time(), [], [], []
     try:
@@ -235,7 +239,8 @@ def main():
                 print("\n".join(lines), flush=True)
                 furnaces, wrong = [*furnaces, *lines], [*wrong, *found]
         if options.only != "furnace":
-            grid, found = sphere_table(material_cases.rows(), options.size, options.samples, options.threads)
+            rows = [row for row in material_cases.rows() if not options.row or row[0] in options.row]
+            grid, found = sphere_table(rows, options.size, options.samples, options.threads)
             wrong += found
     finally:
         engine.unregister()
