@@ -334,10 +334,12 @@ def attributes_of_hair():
             x = number * 0.6 + i * 0.1 - 1.8
             for k, (along, up) in enumerate(((0.0, 0.0), (0.3, 0.3), (-0.2, 0.7), (0.2, 1.2))):
                 curves.points[4 * i + k].position = (x, along - 1.5, up - 0.2)
-                radius.data[4 * i + k].value = 0.02 + 0.005 * k
-        shown = "radius" if kind == "radius" else "mine"
+                # Thin at the tip: strands are closed by balls, where Cycles' are open.
+                radius.data[4 * i + k].value = 0.035 - 0.011 * k
+        # A pair of each curve is a UV map, and its name is one for all that have it.
+        shown = {"radius": "radius", "FLOAT2": "pair"}.get(kind, "mine")
         if kind != "radius":
-            values = curves.attributes.new("mine", kind, domain)
+            values = curves.attributes.new(shown, kind, domain)
             width = {"FLOAT": 1, "INT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}[kind]
             numbers = [0.1 + 0.8 * ((7 * k * k + 3 * k) % 11) / 11.0 for k in range(len(values.data) * width)]
             cast = (lambda x: round(3.0 * x)) if kind == "INT" else float

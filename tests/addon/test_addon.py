@@ -266,6 +266,20 @@ def test_panels_are_those_of_cycles_where_they_hold(blender):
     assert not any(name.startswith("PENUMBRA_") for shown in theirs.values() for name in shown)
 
 
+def test_lines_of_freestyle_are_drawn_without_a_graphics_card(blender, tmp_path):
+    paths, _ = blender.run("freestyle", tmp_path)
+    if not paths:
+        pytest.skip("this Blender has no Freestyle")
+    red = []
+    for path in paths:
+        layers = read(path)
+        r, g, b = (layers[f"ViewLayer.Combined.{c}"] for c in "RGB")
+        red.append((r > 0.5) & (g < 0.3 * r) & (b < 0.3 * r))
+    assert red[0].sum() > 50
+    # The strokes' edges are antialiased by other samples.
+    assert (red[0] != red[1]).sum() < 0.1 * red[0].sum(), [mask.sum() for mask in red]
+
+
 def test_a_border_is_a_part_of_the_picture(blender, tmp_path):
     paths, _ = blender.run("border", tmp_path)
     whole, part, crop = [read(path)["ViewLayer.Combined.R"] for path in paths]
