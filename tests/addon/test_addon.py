@@ -48,14 +48,14 @@ def test_f12_fills_every_pass(blender, tmp_path):
 def _unlike(expected, found, blocks=4):
     """Where one channel of a picture is not the other's: in its mean, and in those of `blocks`² parts of it.
 
-    The noise of a mean is that of differences between pixels, which edges make no smaller. A part may differ by 1 %, of
+    The noise of a mean is that of differences between pixels, which edges make no smaller. A part may differ by 0.5 %, of
     a fifth of the whole's mean at least.
     """
     whole = np.abs(expected).mean()
     parts = [("all", expected, found, 0.002 * whole, 4.0)]
     for row, bands in enumerate(zip(np.array_split(expected, blocks), np.array_split(found, blocks))):
         for column, (a, b) in enumerate(zip(*(np.array_split(band, blocks, axis=1) for band in bands))):
-            parts.append(((row, column), a, b, 0.01 * max(abs(a.mean()), 0.2 * whole), 5.0))
+            parts.append(((row, column), a, b, 0.005 * max(abs(a.mean()), 0.2 * whole), 5.0))
     for where, a, b, share, sigmas in parts:
         noise = np.std(b - a, ddof=1) / np.sqrt(a.size)
         if abs(b.mean() - a.mean()) > share + sigmas * noise:
