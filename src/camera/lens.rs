@@ -120,6 +120,9 @@ mod tests {
         }
     }
 
+    /// A name, what it is the mean of, and that mean.
+    type Moment<'a> = (&'static str, &'a dyn Fn([f32; 2]) -> f32, f32);
+
     /// With the apothem h and t = tan π/n: ⟨r²⟩ = h² (1 + t²/3) / 2, ⟨r⁴⟩ = h⁴ (1 + 2 t²/3 + t⁴/5) / 3; for five corners or
     /// more but 6 ⟨x²y²⟩ = 2 ⟨x⁴⟩ = ¾ ⟨r⁴⟩ as on a disk, where ⟨r⁴⟩ = R⁴/3. A ratio q divides each x by q.
     #[test]
@@ -133,7 +136,7 @@ mod tests {
             let fourth = h.powi(4) * (1.0 + 2.0 * t * t / 3.0 + t.powi(4) / 5.0) / 3.0;
             for (rotation, q) in [(0.0, 1.0), (0.4, 2.0), (1.1, 0.5)] {
                 let lens = lens(blades, rotation, q);
-                let moments: [(&str, &dyn Fn([f32; 2]) -> f32, f32); 6] = [
+                let moments: [Moment<'_>; 6] = [
                     ("x²", &|[x, _]| x * x, 0.5 * second / (q * q)),
                     ("y²", &|[_, y]| y * y, 0.5 * second),
                     ("xy", &|[x, y]| x * y, 0.0),
