@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Debug;
 
 use penumbra::bsdf::{
-    Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Lobe, Microfacets, Sheen, Stretched, Surface, ThinFilm,
-    Widening, f0_from_eta, fresnel_dielectric,
+    Bsdf, BsdfSample, Builder, Closure, Coat, Conductor, Inside, Lobe, Method, Microfacets, Sheen, Stretched,
+    Subsurface, Surface, ThinFilm, Widening, f0_from_eta, fresnel_dielectric,
 };
 use penumbra::math::{Frame, Rgb, Vec3};
 use penumbra::sampling::{Dimension, Pattern, Sampler};
@@ -46,6 +46,16 @@ const TILTED: Frame =
 const STRETCHED: Stretched = Stretched { alpha: [0.5, 0.1], frame: TURNED };
 const METAL: Surface = Surface { metallic: 1.0, ..WHITE };
 const GLASS: Surface = Surface { transmission: 1.0, ..WHITE };
+/// What is let in is what the lobe answers for: here all of it.
+const WAX: Subsurface = Subsurface {
+    weight: 1.0,
+    color: Rgb::WHITE,
+    radius: Rgb::new(0.1, 0.05, 0.02),
+    anisotropy: 0.3,
+    ior: 1.4,
+    method: Method::Walk,
+    shallow: false,
+};
 const TEAL: Rgb = Rgb::new(0.1, 0.6, 0.5);
 
 struct Case {
@@ -142,6 +152,33 @@ const CASES: &[Case] = &[
     single("rough diffuse, teal", Closure::Diffuse { color: TEAL, roughness: 0.5, multiscatter: true }, false),
     single("rough diffuse, once", Closure::Diffuse { color: TEAL, roughness: 0.8, multiscatter: false }, false),
     single("translucent", Closure::Translucent { color: Rgb::WHITE }, true),
+    single("beneath", Closure::Beneath { subsurface: WAX, alpha: 0.3 }, true),
+    single("beneath, smooth", Closure::Beneath { subsurface: WAX, alpha: 0.0 }, true),
+    single("beneath, matt", Closure::Beneath { subsurface: WAX, alpha: 1.0 }, true),
+    single(
+        "beneath, skin",
+        Closure::Beneath { subsurface: Subsurface { color: TEAL, method: Method::Skin, ..WAX }, alpha: 0.3 },
+        false,
+    ),
+    single(
+        "beneath, free paths",
+        Closure::Beneath { subsurface: Subsurface { anisotropy: -0.5, method: Method::FreePath, ..WAX }, alpha: 0.3 },
+        true,
+    ),
+    single(
+        "beneath, profile",
+        Closure::Beneath { subsurface: Subsurface { method: Method::Profile, shallow: true, ..WAX }, alpha: 0.3 },
+        true,
+    ),
+    single(
+        "beneath, in two channels",
+        Closure::Beneath { subsurface: Subsurface { radius: Rgb::new(0.1, 0.0, 0.02), ..WAX }, alpha: 0.3 },
+        true,
+    ),
+    outside("wax", Surface { subsurface: Some(WAX), ..WHITE }, true),
+    outside("wax, half", Surface { subsurface: Some(Subsurface { weight: 0.5, ..WAX }), ..WHITE }, true),
+    outside("wax, coated", Surface { subsurface: Some(WAX), coat: Some(COAT), ..WHITE }, true),
+    inside("wax, back", Surface { subsurface: Some(WAX), base_color: TEAL, roughness: 0.0, ..WHITE }, false),
     single("glossy", Closure::Glossy { color: Rgb::WHITE, facets: FACETS }, true),
     single("glossy, smooth", Closure::Glossy { color: TEAL, facets: Microfacets { roughness: 0.0, ..FACETS } }, false),
     single(
@@ -336,6 +373,56 @@ fn directions_follow_the_density() {
             expected.push((1.0 - scattered).max(0.0) * n as f64);
             chi2::check(&observed, &expected, CASES.len() * views.len())
                 .unwrap_or_else(|e| panic!("{} {degrees}: {e}; density {scattered}, others {others}", case.name));
+        }
+    }
+}
+
+/// Ways beneath: the density of the microfacets through which they go, that of the refraction lobe, or half of it and
+/// half the cosine's; and what each of them leads to.
+#[test]
+fn ways_beneath_follow_the_microfacets() {
+    let grid = chi2::Grid { nx: 26, ny: 18 };
+    let n = 40_000;
+    let cases = [(Method::Walk, 0.3_f32), (Method::Walk, 1.0), (Method::FreePath, 0.1), (Method::Skin, 0.3)];
+    for (method, alpha) in cases {
+        let subsurface = Subsurface { method, ..WAX };
+        for (degrees, above) in [(5.0, true), (60.0, true), (80.0, false)] {
+            let wo = view(degrees, 0.7, above);
+            let skin = method == Method::Skin;
+            let facets =
+                Microfacets { roughness: if skin { 1.0 } else { alpha.sqrt() }, stretched: None, multiscatter: false };
+            let refraction =
+                seen(&Closure::Refraction { color: Rgb::WHITE, ior: subsurface.ior, facets }, wo, true, PLAIN);
+            let bsdf = seen(&Closure::Beneath { subsurface, alpha }, wo, true, PLAIN);
+            let density = |x: f64, y: f64| {
+                let z = 2.0 * x - 1.0;
+                let (sin, cos) = (TAU * y).sin_cos();
+                let r = (1.0 - z * z).sqrt();
+                let refracted = refraction.eval(Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)).pdf;
+                let into = if above { -z } else { z };
+                let diffuse = into.max(0.0) / PI;
+                4.0 * PI * if skin { 0.5 * (f64::from(refracted) + diffuse) } else { f64::from(refracted) }
+            };
+            let mass = grid.integrals(&density, 2e-6);
+            let mut observed = vec![0.0; mass.len()];
+            let mut lost = 0.0;
+            for s in samples(&bsdf, Pattern::Independent, n) {
+                let Some(s) = s else {
+                    lost += 1.0;
+                    continue;
+                };
+                assert!(s.delta && s.lobe == Lobe::Diffuse && s.wi.z * wo.z < 0.0, "{method:?} {alpha}: {s:?}");
+                assert!((s.weight.sum().g - 1.0).abs() < 1e-6 && s.eta == 1.0, "{method:?} {alpha}: {s:?}");
+                let beneath = s.beneath.and_then(|index| bsdf.beneath(index));
+                assert!(matches!(beneath.unwrap().inside, Inside::Medium(_)));
+                let azimuth = f64::from(s.wi.y).atan2(f64::from(s.wi.x)).rem_euclid(TAU) / TAU;
+                observed[grid.cell([0.5 + 0.5 * f64::from(s.wi.z), azimuth])] += 1.0;
+            }
+            let mut expected: Vec<f64> = mass.iter().map(|m| m * n as f64).collect();
+            observed.push(lost);
+            expected.push((1.0 - mass.iter().sum::<f64>()).max(0.0) * n as f64);
+            chi2::check(&observed, &expected, 3 * cases.len())
+                .unwrap_or_else(|e| panic!("{method:?}, {alpha}, {degrees}: {e}"));
         }
     }
 }
@@ -630,8 +717,43 @@ fn extremes_stay_finite() {
     for case in CASES {
         check_finite(&case.name, &|wo| case.bsdf(wo), &directions, &us);
     }
+    for method in [Method::Walk, Method::Skin, Method::FreePath, Method::Profile] {
+        for radius in [0.0, 1e-9, 1e-8, 1.0, 1e30, f32::INFINITY, f32::NAN, -1.0] {
+            for (color, anisotropy, ior) in
+                [(1.0, 2.0, 0.0), (0.0, -2.0, f32::NAN), (f32::NAN, f32::NAN, 1e9), (7.0, 0.99, 1.0), (1e-6, 0.0, 1.4)]
+            {
+                let (color, radius) = (Rgb::splat(color), Rgb::new(radius, 0.1, 0.0));
+                let subsurface = Subsurface { color, radius, anisotropy, ior, method, ..WAX };
+                let closure = Closure::Beneath { subsurface, alpha: ior };
+                check_finite(&closure, &|wo| seen(&closure, wo, true, PLAIN), &directions, &us);
+                for s in samples(&seen(&closure, Vec3::Z, true, PLAIN), Pattern::Sobol, 64).flatten() {
+                    check_inside(&closure, &s);
+                }
+            }
+        }
+    }
     let black = Surface { base_color: Rgb::BLACK, specular: 0.0, ..WHITE };
     assert!(Bsdf::new(&black, Vec3::Z, true).sample(0.5, [0.5, 0.5]).is_none());
+}
+
+/// What a way beneath leads to can be walked in.
+fn check_inside(closure: &Closure, sample: &BsdfSample) {
+    let Some(index) = sample.beneath else { return };
+    let bsdf = seen(closure, Vec3::Z, true, PLAIN);
+    let good = match bsdf.beneath(index).unwrap().inside {
+        Inside::Medium(medium) => {
+            let within = |x: f32, [low, high]: [f32; 2]| x >= low && x <= high;
+            medium.sigma_t.is_finite()
+                && medium.scale.is_finite()
+                && medium.sigma_t.to_array().iter().all(|&sigma| sigma >= 0.0)
+                && medium.albedo.to_array().iter().all(|&albedo| within(albedo, [0.2, 0.999_999]))
+                && within(medium.anisotropy, [-0.99, 0.99])
+        }
+        Inside::Profile(profile) => {
+            profile.sample(0.5).iter().all(|x| !x.is_nan()) && profile.eval(0.1).to_array().iter().all(|x| *x >= 0.0)
+        }
+    };
+    assert!(good, "{closure:?}: {:?}", bsdf.beneath(index));
 }
 
 fn check_finite(surface: &dyn Debug, seen: &dyn Fn(Vec3) -> Bsdf, directions: &[Vec3], us: &[[f32; 2]]) {

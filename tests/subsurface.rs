@@ -93,6 +93,33 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
     }
 }
 
+/// A half space is of the same color however short its free paths are, and wherever it stands: here the shortest are some
+/// twenty times as long as what `f32` can tell apart at that distance from the camera.
+#[test]
+fn short_paths_far_from_the_camera_give_back_as_much() {
+    let colors = [0.3, 0.6, 0.75];
+    for (method, expected) in [
+        (Method::FreePath, colors.map(|color| half_space(albedo_of(color)))),
+        // A profile reflects the color itself.
+        (Method::Burley, colors),
+    ] {
+        let length = if method == Method::Burley { 4.0 * std::f64::consts::PI } else { 1.0 };
+        let radius = [3.2e-4, 1.6e-4, 8e-5].map(|radius| radius * length);
+        let mut builder = Builder::default();
+        let material = builder.material(beneath(subsurface(colors, radius, method)));
+        block(&mut builder, [0.5; 3], material);
+        builder.desc.instances[0].transform = DAffine3::from_translation(DVec3::new(31.0, 0.0, -17.0));
+        builder.dome(1.0);
+        builder.look([31.03, 0.0, -17.02], DOWN, 0.01);
+        builder.desc.cameras[0].transform.translation.y += 40.0;
+        let picture = picture(&builder.desc, 16, &settings("combined", 1024));
+        for (channel, expected) in expected.into_iter().enumerate() {
+            let found = mean(&picture, "Combined", channel);
+            close(&format!("{method:?}, channel {channel}"), found, expected, 8e-3);
+        }
+    }
+}
+
 /// What Cycles 5.0.1 makes of a half space from straight above: Principled BSDF, Roughness 1, Specular IOR Level 0, Subsurface
 /// IOR 1.4, Radius (0.4, 0.2, 0.1) m, a block of 8 m under a white
 /// world, 16×16 pixels of 512 samples; standard errors up to 0.003. Its walks end where ours do: the white ones show it.

@@ -33,6 +33,8 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
     bl_use_postprocess = True
     bl_use_shading_nodes_custom = False
+    # Strokes of Freestyle are rendered by this engine, which needs no graphics card.
+    bl_use_custom_freestyle = True
 
     def update_render_passes(self, scene=None, renderlayer=None):
         """Tells Blender which passes there will be."""

@@ -17,6 +17,9 @@ use crate::sampling::warp::sample_cosine_hemisphere;
 /// Mean free paths below this, metres, are those of a surface: Cycles' limit.
 const SMALLEST_RADIUS: f32 = 1e-8;
 
+/// Longer ones, metres, are no different, and their squares are numbers.
+const LARGEST_RADIUS: f32 = 1e12;
+
 /// What the radius means, and how light goes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
@@ -156,7 +159,7 @@ impl Builder<'_> {
 fn way_in(subsurface: &Subsurface, color: Rgb, alpha: f32) -> WayIn {
     let method = subsurface.method;
     let ior = if subsurface.ior > 1.01 { subsurface.ior.min(3.8) } else { 1.01 };
-    let radius = subsurface.radius.map(|r| if r >= SMALLEST_RADIUS { r } else { 0.0 });
+    let radius = subsurface.radius.map(|r| if r >= SMALLEST_RADIUS { r.min(LARGEST_RADIUS) } else { 0.0 });
     let radius = match method {
         Method::Walk | Method::Profile => radius * (0.25 * std::f32::consts::FRAC_1_PI),
         Method::Skin => radius.zip(color, |r, c| r * (3.0 * (1.0 - dipole_albedo(c, ior))).sqrt()),

@@ -11,7 +11,7 @@ use super::subsurface::Entry;
 use crate::bsdf::Profile;
 use crate::math::{Frame, Ray, Rgb, Vec3, sqr};
 use crate::sampling::{Decision, Dimension, Sampler};
-use crate::scene::{Interaction, Scene};
+use crate::scene::{Inside, Interaction, Scene};
 
 /// Surfaces that one probe may meet.
 const MOST: usize = 32;
@@ -23,6 +23,7 @@ impl Entry<'_> {
     /// Where light of throughput `beta` comes out, as seen from the side on which it went in, and what is left of it;
     /// `None` where a probe meets nothing.
     pub fn probe(&self, scene: &Scene, sampler: &Sampler, profile: &Profile, beta: Rgb) -> Option<(Interaction, Rgb)> {
+        let (inside, start) = scene.inside(self.it)?;
         let draw = |decision| Dimension::at_bounce(self.vertex, decision);
         let [u, v] = sampler.get_2d(draw(Decision::WalkDirection));
         let side = if self.it.front { 1.0 } else { -1.0 };
@@ -36,17 +37,17 @@ impl Entry<'_> {
         };
         let [r, height] = profile.sample(u);
         let (sin, cos) = (TAU * v).sin_cos();
-        let from = self.it.p + axes[2] * height + (axes[0] * cos + axes[1] * sin) * r;
-        let mut ray = self.it.spawn(-axes[2]);
+        let from = start.p + axes[2] * height + (axes[0] * cos + axes[1] * sin) * r;
+        let mut ray = start.spawn(-axes[2]);
         (ray.o, ray.t_max) = (from, 2.0 * height);
         let share = |along: Vec3, ng: Vec3| if along == n { ALONG_NORMAL } else { rest } * along.dot(ng).abs();
         let pdf = profile.pdf(r);
         let mut found: SmallVec<[(Interaction, Rgb); 4]> = SmallVec::new();
-        self.surfaces_along(scene, ray, |it| {
+        self.surfaces_along(scene, inside, ray, |there, it| {
             let squares: f32 = [s, t, n].into_iter().map(|along| sqr(share(along, it.ng))).sum();
             // Power heuristic over the axes, over the density along this one.
             let weight = share(axes[2], it.ng) / squares;
-            let light = profile.eval(it.p.distance(self.it.p)) * (weight / pdf);
+            let light = profile.eval(there.p.distance(start.p)) * (weight / pdf);
             if light.is_finite() && !light.is_black() {
                 found.push((Interaction { wo: it.ng * side, front: self.it.front, ..it }, light));
             }
@@ -63,13 +64,19 @@ impl Entry<'_> {
         Some((it, beta * light * (total / light.mean())))
     }
 
-    /// Calls `visit` with the surfaces of the object along `ray`.
-    fn surfaces_along(&self, scene: &Scene, mut ray: Ray, mut visit: impl FnMut(Interaction)) {
+    /// Calls `visit` with the surfaces of the object along `ray`, in the space of `inside` and in render space.
+    fn surfaces_along(
+        &self,
+        scene: &Scene,
+        inside: &Inside,
+        mut ray: Ray,
+        mut visit: impl FnMut(&Interaction, Interaction),
+    ) {
         for _ in 0..MOST {
-            let Some(hit) = scene.way_out(self.it.instance, &ray) else { return };
-            let it = scene.coming_out(&ray, &hit, self.cone);
-            ray = it.continued(&ray, hit.t);
-            visit(it);
+            let Some(hit) = inside.way_out(&ray) else { return };
+            let there = inside.interaction(scene, &ray, &hit);
+            visit(&there, scene.coming_out(&ray, &hit, self.cone));
+            ray = there.continued(&ray, hit.t);
         }
     }
 }

@@ -66,11 +66,12 @@ impl Entry<'_> {
     pub fn walk(&self, scene: &Scene, sampler: &Sampler, medium: &Medium, beta: Rgb) -> Option<(Interaction, Rgb)> {
         let first = Stage::first(medium);
         let later = first.later();
-        let mut guide = Guide::new(medium, self.it.p, self.n);
+        let (inside, start) = scene.inside(self.it)?;
+        let mut guide = Guide::new(medium, start.p, self.n);
         let mut throughput = beta * medium.scale;
-        let mut ray = self.it.spawn(self.wi);
+        let mut ray = start.spawn(self.wi);
         // A scattering so near the surface that rounding may have it beyond would be lost: it comes out.
-        let slack = 0.5 * self.it.p_err.max_element();
+        let slack = 0.5 * start.p_err.max_element();
         for step in 0..MAX_STEPS {
             let draw = |decision| sampler.get_1d(Dimension::at_bounce(self.vertex, decision).nth(step));
             let stage = if step <= SIMILAR_AFTER { &first } else { &later };
@@ -91,7 +92,7 @@ impl Entry<'_> {
             let free = -(1.0 - draw(Decision::WalkDistance)).ln() / sigma;
             let reach = free + slack;
             ray.t_max = if step == 0 { reach.max(FAR / least(stage.sigma_t)) } else { reach };
-            let hit = scene.way_out(self.it.instance, &ray);
+            let hit = inside.way_out(&ray);
             if step == 0 {
                 guide.opposite = hit.map(|hit| -self.n.dot(ray.d) * hit.t);
             }

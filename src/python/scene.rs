@@ -9,7 +9,9 @@ use pyo3::prelude::*;
 use super::exception;
 use crate::desc::SceneDesc;
 use crate::error::{Result, Warnings};
-use crate::import::blender::{BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints, random_per_island};
+use crate::import::blender::{
+    BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints, pointiness, random_per_island,
+};
 
 /// A scene in Blender's terms: one document and the arrays of its meshes. The add-on fills it; pieces
 /// that are set again replace the old ones.
@@ -103,8 +105,10 @@ impl Scene {
 
     /// Takes in strands as shape `key`: positions (n, 3), radii (n), and where each strand ends (uint32, the
     /// index behind its last point); points that stand alone where `ends` is empty. Between its points a strand is
-    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))]; `moving` where its motion will follow.
-    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new(), moving=false))]
+    /// straight, or a Catmull-Rom spline where `smooth`; uvs [(name, (strands, 2))]; `moving` where its motion will follow;
+    /// attributes [(name, (n or strands, 4))].
+    #[pyo3(signature = (key, name, positions, radii, ends, smooth=false, uvs=Vec::new(), moving=false,
+        attributes=Vec::new()))]
     fn set_rounds(
         &self,
         key: u64,
@@ -115,12 +119,15 @@ impl Scene {
         smooth: bool,
         uvs: Vec<Layer<'_>>,
         moving: bool,
+        attributes: Vec<Layer<'_>>,
     ) -> PyResult<()> {
         let ends = ends.as_slice().map_err(|_| contiguous())?;
         let (positions, radii) = (floats(&positions)?, floats(&radii)?);
         let ends = Ends { points: ends, smooth, moving };
-        let uvs = layers(&uvs)?;
-        self.lock().set_rounds(key, name, positions, radii, ends, &uvs).map_err(|error| exception(&error))
+        let (uvs, attributes) = (layers(&uvs)?, layers(&attributes)?);
+        self.lock()
+            .set_rounds(key, name, positions, radii, ends, [&uvs, &attributes])
+            .map_err(|error| exception(&error))
     }
 
     /// Takes in where the points of the shape `key` are at other times of the shutter: [(frames after the frame,
@@ -151,6 +158,19 @@ impl Scene {
     fn random_per_island<'py>(py: Python<'py>, points: usize, edges: Ints<'_>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let edges = ints(&edges)?;
         Ok(PyArray1::from_vec(py, py.detach(|| random_per_island(points, edges))))
+    }
+
+    /// The numbers of Pointiness for each point of a mesh: float32. `positions` and `normals` are (n, 3), float32; `edges`
+    /// (int32, (e, 2)) are pairs of points.
+    #[staticmethod]
+    fn pointiness<'py>(
+        py: Python<'py>,
+        positions: Floats<'_>,
+        normals: Floats<'_>,
+        edges: Ints<'_>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let (positions, normals, edges) = (floats(&positions)?, floats(&normals)?, ints(&edges)?);
+        Ok(PyArray1::from_vec(py, py.detach(|| pointiness(positions, normals, edges))))
     }
 
     /// Forgets the shape `key`.

@@ -27,6 +27,7 @@ mod vectors;
 pub use blur::Blur;
 pub use effects::Effects;
 pub use ids::Ids;
+pub use inside::Inside;
 pub use instance::{Instance, mask};
 pub use interaction::Interaction;
 pub use material::{Coverage, Material};
@@ -91,7 +92,7 @@ pub struct Scene {
     pub ids: Ids,
     bvh: Bvh,
     /// By instance, the shape alone where light may walk in its inside; empty where it does so nowhere.
-    insides: Vec<Option<Bvh>>,
+    insides: Vec<Option<Inside>>,
     /// Those of the instances whose insides absorb light, and which instances they are; `None` where there are none.
     absorbing: Option<(Bvh, Vec<u32>)>,
     shapes: Vec<Shape>,

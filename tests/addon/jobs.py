@@ -336,9 +336,6 @@ def left_out(folder):
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
     material.displacement_method = "BOTH"
-    pointed = tree.nodes.new("ShaderNodeNewGeometry")
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    tree.links.new(pointed.outputs["Pointiness"], shader.inputs["Base Color"])
     bpy.context.scene.cycles.use_fast_gi = True
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(material)
@@ -592,6 +589,26 @@ def panels_of(engine):
                 names.append(name)
         shown[kind] = names
     return shown
+
+
+def freestyle(folder):
+    """The same cube with red lines by both engines: paths of the two files; none where Blender has no Freestyle."""
+    if not bpy.app.build_options.freestyle:
+        return []
+    scene = _scene(spp=16)
+    _room()
+    scene.render.use_freestyle = scene.view_layers[0].use_freestyle = True
+    settings = scene.view_layers[0].freestyle_settings
+    lines = settings.linesets[0] if settings.linesets else settings.linesets.new("Lines")
+    lines.linestyle = lines.linestyle or bpy.data.linestyles.new("Lines")
+    lines.linestyle.color, lines.linestyle.thickness = (1.0, 0.0, 0.0), 4.0
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = 16, False, False
+    paths = []
+    for engine in ("CYCLES", "PENUMBRA"):
+        scene.render.engine = engine
+        paths.append(os.path.join(folder, f"lines-{engine.lower()}.exr"))
+        _render(paths[-1])
+    return paths
 
 
 def border(folder):

@@ -3,6 +3,8 @@ with nodes.
 """
 
 
+import math
+
 import bpy
 
 import scenes
@@ -248,6 +250,22 @@ def few_bounces_of_lamps():
     bpy.data.objects["Plane"].data.materials[0] = scenes.material("White", "ShaderNodeBsdfDiffuse", Color=(0.9, 0.9, 0.9, 1.0))
 
 
+def no_bounces_of_a_wide_lamp():
+    """A wide lamp that lights only what the camera sees: what rays find of it by themselves stays, in glass and mirrors,
+    and of all that scatters.
+    """
+    scenes.room()
+    wide = scenes.lamp("AREA", (0.5, -0.5, 3.5), energy=200.0, size=3.0)
+    wide.data.cycles.max_bounces = 0
+    mirror = scenes.material("Mirror", "ShaderNodeBsdfAnisotropic", Color=(0.9, 0.9, 0.9, 1.0), Roughness=0.1)
+    bpy.data.objects["Cube"].data.materials[0] = mirror
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=0.6, location=(1.5, -0.8, 0.61))
+    bpy.ops.object.shade_smooth()
+    glass = scenes.material("Glass", "ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.8, 1.0), Roughness=0.0)
+    bpy.context.object.data.materials.append(glass)
+    bpy.data.objects["Plane"].data.materials[0] = scenes.material("White", "ShaderNodeBsdfDiffuse", Color=(0.9, 0.9, 0.9, 1.0))
+
+
 def islands():
     """A colour for each part of a mesh."""
     scenes.room()
@@ -264,6 +282,85 @@ def islands():
     bpy.ops.object.join()
     bpy.context.object.data.materials.clear()
     bpy.context.object.data.materials.append(material)
+
+
+def pointed():
+    """Ridges, grooves and corners, smooth and with faces apart, as colours."""
+    scenes.room()
+    material, tree = _tree("Pointed")
+    number = _node(tree, "ShaderNodeNewGeometry").outputs["Pointiness"]
+    stretched = _node(tree, "ShaderNodeMath", {0: number, 1: 4.0, 2: -1.5}, operation="MULTIPLY_ADD").outputs[0]
+    _output(tree, Surface=_node(tree, "ShaderNodeEmission", {"Color": stretched}).outputs[0])
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=24, y_subdivisions=16, size=1.0, location=(-1.2, -1.4, 0.5))
+    hills = bpy.context.object
+    hills.scale = (1.6, 1.2, 1.0)
+    for vertex in hills.data.vertices:
+        x, y, _ = vertex.co
+        vertex.co.z = 0.06 * math.sin(13.0 * x) * math.cos(11.0 * y) + 0.1 * abs(y)
+    bpy.ops.mesh.primitive_cube_add(size=0.9, location=(0.7, -1.2, 0.5), rotation=(0.2, 0.3, 0.4))
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.5, location=(1.9, -1.0, 0.6))
+    ball = bpy.context.object
+    # Faces apart, and an edge that no face has.
+    apart = ball.data
+    corners = [tuple(apart.vertices[i].co) for face in apart.polygons for i in face.vertices]
+    loose = [(0.0, 0.0, 0.5), (0.0, 0.0, 0.9)]
+    split = bpy.data.meshes.new("Split")
+    split.from_pydata(corners + loose, [(len(corners), len(corners) + 1)],
+                      [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(len(apart.polygons))])
+    ball.data = split
+    for obj in (hills, bpy.data.objects["Cube.001"], ball):
+        obj.data.materials.append(material)
+
+
+def _shows(name, attribute, output="Color"):
+    """A material that glows as an attribute."""
+    material, tree = _tree(name)
+    shown = _node(tree, "ShaderNodeAttribute", attribute_name=attribute).outputs[output]
+    _output(tree, Surface=_node(tree, "ShaderNodeEmission", {"Color": shown}).outputs[0])
+    return material
+
+
+def attributes_of_hair():
+    """What hair curves and points have of their own, by point and by curve: numbers, pairs, vectors and colours."""
+    scenes.room()
+    bpy.context.scene.cycles_curves.shape = "THICK"
+    kinds = (("FLOAT_COLOR", "POINT", "Color"), ("FLOAT", "CURVE", "Color"), ("FLOAT2", "CURVE", "Vector"),
+             ("FLOAT_VECTOR", "POINT", "Fac"), ("INT", "POINT", "Fac"), ("radius", "POINT", "Vector"))
+    for number, (kind, domain, output) in enumerate(kinds):
+        curves = bpy.data.hair_curves.new(f"Hair {number}")
+        curves.add_curves([4] * 6)
+        radius = curves.attributes.get("radius") or curves.attributes.new("radius", "FLOAT", "POINT")
+        for i in range(6):
+            x = number * 0.6 + i * 0.1 - 1.8
+            for k, (along, up) in enumerate(((0.0, 0.0), (0.3, 0.3), (-0.2, 0.7), (0.2, 1.2))):
+                curves.points[4 * i + k].position = (x, along - 1.5, up - 0.2)
+                # Thin at the tip: strands are closed by balls, where Cycles' are open.
+                radius.data[4 * i + k].value = 0.035 - 0.011 * k
+        # A pair of each curve is a UV map, and its name is one for all that have it.
+        shown = {"radius": "radius", "FLOAT2": "pair"}.get(kind, "mine")
+        if kind != "radius":
+            values = curves.attributes.new(shown, kind, domain)
+            width = {"FLOAT": 1, "INT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}[kind]
+            numbers = [0.1 + 0.8 * ((7 * k * k + 3 * k) % 11) / 11.0 for k in range(len(values.data) * width)]
+            cast = (lambda x: round(3.0 * x)) if kind == "INT" else float
+            values.data.foreach_set({1: "value", 4: "color"}.get(width, "vector"), [cast(x) for x in numbers])
+        curves.materials.append(_shows(f"Shown {number}", shown, output))
+        scenes.add(f"Hair {number}", curves)
+    mesh = bpy.data.meshes.new("Seeds")
+    mesh.from_pydata([(x * 0.5 - 1.0, -2.2, 0.15) for x in range(5)], [], [])
+    mesh.attributes.new("mine", "FLOAT_VECTOR", "POINT").data.foreach_set("vector", [0.05 * x for x in range(15)])
+    obj = scenes.add("Seeds", mesh)
+    tree = bpy.data.node_groups.new("ToPoints", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    first, last = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    to_points, dressed = tree.nodes.new("GeometryNodeMeshToPoints"), tree.nodes.new("GeometryNodeSetMaterial")
+    to_points.inputs["Radius"].default_value = 0.15
+    dressed.inputs["Material"].default_value = _shows("Shown by points", "mine", "Vector")
+    tree.links.new(first.outputs[0], to_points.inputs["Mesh"])
+    tree.links.new(to_points.outputs[0], dressed.inputs["Geometry"])
+    tree.links.new(dressed.outputs[0], last.inputs[0])
+    obj.modifiers.new("Points", "NODES").node_group = tree
 
 
 def tangents():

@@ -199,8 +199,7 @@ def _inputs():
         probe = Tile("probe")
         names = [socket.name for socket in probe.node(kind).outputs if socket.enabled]
         bpy.data.materials.remove(probe.material)
-        # Not there, as docs/blender.md says.
-        for name in (name for name in names if name != "Pointiness"):
+        for name in names:
             yield f"{kind[10:]} {name}", lambda t, k=kind, n=name: t.node(k).outputs[n]
     for name in ("Fresnel", "Facing"):
         yield f"Layer Weight {name}", lambda t, n=name: t.node(

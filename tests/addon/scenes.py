@@ -280,6 +280,22 @@ def depth_of_field():
     lamp("POINT", (1.2, -0.8, 2.0), energy=100.0, shadow_soft_size=0.4)
 
 
+def bokeh():
+    """Small lights far out of focus: the shape of the aperture, turned and narrowed."""
+    camera = room()
+    for obj in ("Cube", "Plane"):
+        bpy.data.objects.remove(bpy.data.objects[obj])
+    dof = camera.data.dof
+    dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 2.0, 0.1
+    dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio = 5, 0.35, 1.6
+    glow = material("Glow", "ShaderNodeEmission", Strength=30.0)
+    for x, color in ((-1.3, (1.0, 0.3, 0.1, 1.0)), (0.0, (0.2, 1.0, 0.2, 1.0)), (1.3, (0.2, 0.4, 1.0, 1.0))):
+        own = glow.copy()
+        next(node for node in own.node_tree.nodes if node.type == "EMISSION").inputs["Color"].default_value = color
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, radius=0.06, location=(x, 0.0, 0.5 + 0.3 * x))
+        bpy.context.object.data.materials.append(own)
+
+
 def panorama():
     camera = room()
     camera.location = (0.2, -1.5, 1.2)

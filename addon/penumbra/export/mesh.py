@@ -3,7 +3,7 @@
 import numpy as np
 from penumbra import Scene
 
-from .nodes import RANDOM_PER_ISLAND
+from .nodes import POINTINESS, RANDOM_PER_ISLAND
 
 
 def _array(collection, attribute, width, dtype):
@@ -42,6 +42,11 @@ def hand_over(scene, key, mesh, asked):
         arrays["triangle_polygons"] = _array(mesh.loop_triangle_polygons, "value", 1, np.int32)
     scene.set_mesh(key, mesh.name, uvs=_uvs(mesh), colors=_colors(mesh), attributes=_attributes(mesh, asked),
                    texture_space=[list(mesh.texspace_location), list(mesh.texspace_size)], **arrays)
+
+
+def is_known(attribute):
+    """True for types that nodes can read."""
+    return attribute.data_type in _TYPES
 
 
 def _corner_verts(mesh):
@@ -85,20 +90,23 @@ def _attributes(mesh, asked):
     found = []
     for name in sorted(asked - known):
         attribute = mesh.attributes.get(name)
-        if attribute is None or attribute.data_type not in _TYPES or attribute.domain == "EDGE":
+        if attribute is None or not is_known(attribute) or attribute.domain == "EDGE":
             continue
-        values = _as_colors(attribute)
+        values = as_colors(attribute)
         if attribute.domain == "FACE":
             values = np.repeat(values, _array(mesh.polygons, "loop_total", 1, np.int32), axis=0)
         found.append((name, np.ascontiguousarray(values).reshape(-1)))
-    if RANDOM_PER_ISLAND in asked:
+    if asked & {RANDOM_PER_ISLAND, POINTINESS}:
         edges = _array(mesh.edges, "vertices", 2, np.int32)
-        values = Scene.random_per_island(len(mesh.vertices), edges)
-        found.append((RANDOM_PER_ISLAND, np.repeat(values, 4)))
+    if RANDOM_PER_ISLAND in asked:
+        found.append((RANDOM_PER_ISLAND, np.repeat(Scene.random_per_island(len(mesh.vertices), edges), 4)))
+    if POINTINESS in asked:
+        normals = _array(mesh.vertex_normals, "vector", 3, np.float32)
+        found.append((POINTINESS, np.repeat(Scene.pointiness(positions(mesh), normals, edges), 4)))
     return found
 
 
-def _as_colors(attribute):
+def as_colors(attribute):
     """A number is a grey; what a vector lacks is 0."""
     name, width, dtype = _TYPES[attribute.data_type]
     values = _array(attribute.data, name, width, dtype).astype(np.float32).reshape(-1, width)

@@ -15,6 +15,8 @@ _COMMON = {
 
 # The attribute that stands for Random Per Island.
 RANDOM_PER_ISLAND = "random per island"
+# That for Pointiness.
+POINTINESS = "pointiness of the mesh"
 
 
 def dump(tree, context):
@@ -143,13 +145,18 @@ def _all_nodes():
 
 
 def attributes_asked():
-    """Names of the geometry's attributes that some material asks for; RANDOM_PER_ISLAND stands for those numbers."""
+    """Names of the geometry's attributes that some material asks for; RANDOM_PER_ISLAND and POINTINESS stand for those
+    numbers.
+    """
     asked = set()
     for node in _all_nodes():
         if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
             asked.add(node.attribute_name)
-        elif node.type == "NEW_GEOMETRY" and node.outputs["Random Per Island"].is_linked:
-            asked.add(RANDOM_PER_ISLAND)
+        elif node.type == "VERTEX_COLOR" and node.layer_name:
+            asked.add(node.layer_name)
+        elif node.type == "NEW_GEOMETRY":
+            asked.update(name for output, name in (("Random Per Island", RANDOM_PER_ISLAND), ("Pointiness", POINTINESS))
+                         if node.outputs[output].is_linked)
     return frozenset(asked)
 
 

@@ -242,7 +242,7 @@ class Exporter:
         data = obj.data if own else obj.to_mesh()
         try:
             if obj.type in _ROUNDS:
-                if not rounds.hand_over(self.scene, key, data, self._motion is not None):
+                if not rounds.hand_over(self.scene, key, data, self._motion is not None, self._asked):
                     return None
             elif data is None or not data.polygons:
                 return None
@@ -347,12 +347,12 @@ def _displacement(material):
 
 
 def _key(data, asked):
-    """A number for a data-block: its address, which may be that of another one before, and what it holds; of a mesh
-    the attributes that are `asked` for, too.
+    """A number for a data-block: its address, which may be that of another one before, and what it holds: the
+    attributes that are `asked` for, too.
     """
     counts = (len(data.vertices), len(data.loops), *sorted(asked)) if isinstance(data, bpy.types.Mesh) else ()
     if isinstance(data, (bpy.types.Curves, bpy.types.PointCloud)):
-        counts = (len(data.points),)
+        counts = (len(data.points), *sorted(asked))
     return hash((data.as_pointer(), data.name_full, *counts)) & _KEY
 
 

@@ -116,7 +116,8 @@ impl NamedRounds {
     }
 }
 
-/// Strands of `positions` (three numbers each) and `radii`, with UV maps that hold one pair for each strand.
+/// Strands of `positions` (three numbers each) and `radii`, with UV maps that hold one pair for each strand, and attributes
+/// of four numbers for each point or each strand.
 ///
 /// # Errors
 /// Arrays whose lengths don't fit together. Strands and points that are not finite are told and left out.
@@ -126,7 +127,7 @@ pub fn rounds(
     positions: &[f32],
     radii: &[f32],
     ends: Ends<'_>,
-    uvs: &[LayerArray<'_>],
+    [uvs, attributes]: [&[LayerArray<'_>]; 2],
     warnings: &mut Warnings,
 ) -> Result<NamedRounds> {
     let Ends { points: ends, smooth, moving } = ends;
@@ -143,19 +144,37 @@ pub fn rounds(
         let given = layer.values.len() / 2;
         return Err(broken(format!("has a UV map \"{}\" of {given} pairs for {} strands", layer.name, ends.len())));
     }
+    if let Some(layer) =
+        attributes.iter().find(|layer| ![4 * points.len(), 4 * ends.len()].contains(&layer.values.len()))
+    {
+        let (name, given) = (layer.name, layer.values.len() / 4);
+        return Err(broken(format!("has an attribute \"{name}\" of {given} values for {} points", points.len())));
+    }
     let mut desc = RoundsDesc { name: name.into(), place: place.clone(), ..RoundsDesc::default() };
     desc.uvs = vec![Vec::new(); uvs.len()];
+    desc.attributes = attributes.iter().map(|layer| (layer.name.into(), Vec::new())).collect();
     let mut left_out = 0;
     for (strand, range) in ranges(points.len(), ends).enumerate() {
         if !usable(points, radii, &range) {
             left_out += usize::from(!range.is_empty());
             continue;
         }
+        let (at, thick) = (&points[range.clone()], &radii[range.clone()]);
         if smooth {
-            smooth::flatten(&points[range.clone()], &radii[range], &mut desc.points, &mut desc.radii);
+            smooth::flatten(at, thick, &mut desc.points, &mut desc.radii);
         } else {
-            desc.points.extend_from_slice(&points[range.clone()]);
-            desc.radii.extend(radii[range].iter().map(|radius| radius.max(0.0)));
+            desc.points.extend_from_slice(at);
+            desc.radii.extend(thick.iter().map(|radius| radius.max(0.0)));
+        }
+        for ((_, to), layer) in desc.attributes.iter_mut().zip(attributes) {
+            let values = layer.values.as_chunks::<4>().0;
+            if values.len() != points.len() {
+                to.resize(desc.points.len(), values[strand]);
+            } else if smooth {
+                smooth::spread(at, thick, &values[range.clone()], to);
+            } else {
+                to.extend_from_slice(&values[range.clone()]);
+            }
         }
         for (set, layer) in desc.uvs.iter_mut().zip(uvs) {
             // Blender's v grows upwards.
@@ -180,7 +199,7 @@ mod tests {
     fn made(positions: &[f32], radii: &[f32], ends: &[u32]) -> (Result<Arc<RoundsDesc>>, usize) {
         let mut warnings = Warnings::new();
         let ends = Ends { points: ends, ..Ends::default() };
-        let made = rounds("Fur", &Place::default(), positions, radii, ends, &[], &mut warnings);
+        let made = rounds("Fur", &Place::default(), positions, radii, ends, [&[], &[]], &mut warnings);
         (made.map(|mut made| made.dressed(&[])), warnings.len())
     }
 
@@ -215,14 +234,39 @@ mod tests {
         let layer = |name, values| LayerArray { name, values };
         let maps = [layer("first", &[0.1, 0.2, 0.3, 0.4][..]), layer("second", &[0.5, 0.6, 0.7, 0.8])];
         let mut warnings = Warnings::new();
-        let mut made = rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, &maps, &mut warnings).unwrap();
+        let mut made =
+            rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, [&maps, &[]], &mut warnings).unwrap();
         let named = made.dressed(&["second".into(), "third".into()]);
         assert_eq!(named.uvs[0], [[0.1, 0.8], [0.1, 0.8], [0.3, 0.6], [0.3, 0.6], [0.3, 0.6]]);
         assert_eq!(named.uvs[1][4], [0.7, 1.0 - 0.8]);
         assert_eq!(named.uvs[2], [[0.0, 1.0]; 5]);
         assert!(Arc::ptr_eq(&named, &made.dressed(&["second".into(), "third".into()])));
         let short = [layer("first", &[0.1, 0.2][..])];
-        assert!(rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, &short, &mut warnings).is_err());
+        assert!(rounds("Fur", &Place::default(), &positions, &[0.1; 5], ends, [&short, &[]], &mut warnings).is_err());
+    }
+
+    #[test]
+    fn attributes_are_of_points_or_of_strands() {
+        // The first strand is not finite.
+        let positions = [f32::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0];
+        let of_points: Vec<f32> = (0..16).map(|i| i as f32).collect();
+        let of_strands = [9.0, 9.0, 9.0, 9.0, 1.0, 2.0, 3.0, 4.0];
+        let layers =
+            [LayerArray { name: "points", values: &of_points }, LayerArray { name: "strands", values: &of_strands }];
+        let mut warnings = Warnings::new();
+        for smooth in [false, true] {
+            let ends = Ends { points: &[1, 4], smooth, moving: false };
+            let made = rounds("Fur", &Place::default(), &positions, &[0.1; 4], ends, [&[], &layers], &mut warnings);
+            let desc = made.unwrap().dressed(&[]);
+            let [points, strands] = [0, 1].map(|i| desc.attributes[i].1.clone());
+            assert!(points.len() == desc.points.len() && strands == vec![[1.0, 2.0, 3.0, 4.0]; points.len()]);
+            assert_eq!((points[0][0], points[points.len() - 1][0]), (4.0, 12.0));
+            let middle = desc.points.iter().position(|p| *p == [1.0, 0.0, 0.0]).unwrap();
+            assert_eq!(points[middle][0], 8.0);
+        }
+        let few = [LayerArray { name: "few", values: &of_points[..12] }];
+        let ends = Ends { points: &[1, 4], ..Ends::default() };
+        assert!(rounds("Fur", &Place::default(), &positions, &[0.1; 4], ends, [&[], &few], &mut warnings).is_err());
     }
 
     /// A strand that is left out is left out at all times, and a bend keeps its count of pieces.
@@ -231,7 +275,8 @@ mod tests {
         let positions = [f32::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0];
         let ends = Ends { points: &[1, 4], smooth: true, moving: true };
         let mut warnings = Warnings::new();
-        let mut made = rounds("Fur", &Place::default(), &positions, &[0.1; 4], ends, &[], &mut warnings).unwrap();
+        let mut made =
+            rounds("Fur", &Place::default(), &positions, &[0.1; 4], ends, [&[], &[]], &mut warnings).unwrap();
         let still = made.dressed(&[]);
         assert!(still.motion.is_empty());
         let moved = [9.0, 9.0, 9.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.5, 1.0, 1.0, 0.5];

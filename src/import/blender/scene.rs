@@ -106,7 +106,7 @@ impl BlenderScene {
         Ok(())
     }
 
-    /// Takes in the strands, or points where none ends, that objects name by `key`.
+    /// Takes in the strands, or points where none ends, that objects name by `key`, with UV maps and attributes.
     ///
     /// # Errors
     /// Arrays that don't fit together; what was there of that key is gone then.
@@ -117,11 +117,11 @@ impl BlenderScene {
         positions: &[f32],
         radii: &[f32],
         ends: Ends<'_>,
-        uvs: &[LayerArray<'_>],
+        layers: [&[LayerArray<'_>]; 2],
     ) -> Result<()> {
         self.remove_shape(key);
         let mut warnings = Warnings::new();
-        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, uvs, &mut warnings)?;
+        let rounds = rounds::rounds(name, &self.place(), positions, radii, ends, layers, &mut warnings)?;
         self.rounds.insert(key, rounds);
         self.of_shapes.insert(key, warnings);
         Ok(())

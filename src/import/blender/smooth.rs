@@ -21,12 +21,9 @@ pub fn flatten_like(
     to_radii: &mut Vec<f32>,
 ) {
     let Some(last) = points.len().checked_sub(1) else { return };
-    let four_of = |points: &[[f32; 3]], k: usize| {
-        [k.saturating_sub(1), k, k + 1, (k + 2).min(last)].map(|i| [points[i][0], points[i][1], points[i][2], radii[i]])
-    };
     for k in 0..last {
-        let four = four_of(points, k);
-        let pieces = pieces(&four_of(model, k));
+        let four = four_of(points, radii, k);
+        let pieces = pieces(&four_of(model, radii, k));
         for piece in 0..pieces {
             let [x, y, z, radius] = at(&four, piece as f32 / pieces as f32);
             to.push([x, y, z]);
@@ -35,6 +32,27 @@ pub fn flatten_like(
     }
     to.push(points[last]);
     to_radii.push(radii[last].max(0.0));
+}
+
+/// Appends `values` of the points of the strand through `points` with `radii` at the points that [`flatten`] makes of it:
+/// straight between two, as Cycles has them.
+pub fn spread(points: &[[f32; 3]], radii: &[f32], values: &[[f32; 4]], to: &mut Vec<[f32; 4]>) {
+    let Some(last) = points.len().checked_sub(1) else { return };
+    for k in 0..last {
+        let pieces = pieces(&four_of(points, radii, k));
+        let (a, b) = (values[k], values[k + 1]);
+        to.extend((0..pieces).map(|piece| {
+            let share = piece as f32 / pieces as f32;
+            std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
+        }));
+    }
+    to.push(values[last]);
+}
+
+/// The balls around the stretch from point `k` to the next.
+fn four_of(points: &[[f32; 3]], radii: &[f32], k: usize) -> [[f32; 4]; 4] {
+    let ball = |i: usize| [points[i][0], points[i][1], points[i][2], radii[i]];
+    [k.saturating_sub(1), k, k + 1, (k + 2).min(points.len() - 1)].map(ball)
 }
 
 /// The spline between the second and the third ball, at `t` from 0 to 1.
@@ -99,6 +117,25 @@ mod tests {
             let off = fine.windows(2).map(|pair| distance([x, y], pair)).fold(f32::INFINITY, f32::min);
             assert!(off <= TOLERANCE * radius, "{off} at {i}");
         }
+    }
+
+    #[test]
+    fn values_go_straight_from_point_to_point() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+        let (radii, values) = ([0.05; 3], [[0.0; 4], [1.0, 2.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]]);
+        let mut to = Vec::new();
+        spread(&points, &radii, &values, &mut to);
+        let flat = flat(&points, 0.05);
+        assert!(to.len() == flat.len() && to.len() > 6);
+        let of_point = |p: &[f32; 3]| to[flat.iter().position(|q| q == p).unwrap()];
+        assert!(points.iter().zip(&values).all(|(p, value)| of_point(p) == *value));
+        // Even steps within each stretch.
+        let bend = flat.iter().position(|p| *p == points[1]).unwrap();
+        for (i, value) in to.iter().enumerate().take(bend) {
+            assert!((value[1] - 2.0 * i as f32 / bend as f32).abs() < 1e-5, "{to:?}");
+        }
+        spread(&[], &[], &[], &mut to);
+        assert_eq!(to.len(), flat.len());
     }
 
     /// Distance of a point of the plane from a piece.

@@ -97,10 +97,10 @@ impl Path<'_> {
     }
 
     /// Adds radiance `le` of an emitter with `rules` that the ray from `last` has found, with its MIS
-    /// weight. Lights with shadow rules of their own are counted where the ray begins.
+    /// weight. Lights with shadow rules of their own are counted where the ray begins. How often light may have been
+    /// scattered before a lamp counts holds for light sampling alone, as in Cycles.
     fn add_found(&self, last: &Scattering, rules: &Rules, le: Rgb, sample: &mut PixelSample) {
-        let bounced_too_often = self.scatterings > rules.max_bounces.saturating_add(1);
-        if bounced_too_often || !rules.stops_like_rays() || !rules.lights(last.from.class) {
+        if !rules.stops_like_rays() || !rules.lights(last.from.class) {
             return;
         }
         let l = seen(last.shares, rules) * (self.beta * le);

@@ -71,7 +71,7 @@ pub(super) fn scatter(
                 let l = weight * (beta * found.le);
                 sample.unshadowed += l.diffuse * path.limits.factor(l.sum(), 1);
             }
-            if !found.rules.stops_like_rays() && path.scatterings <= found.rules.max_bounces.saturating_add(1) {
+            if !found.rules.stops_like_rays() {
                 let l = weight
                     * (beta * found.le * found.visibility(scene, &path.ray, &path.media, path.state.transparent));
                 let l = l * path.limits.factor(l.sum(), path.scatterings);

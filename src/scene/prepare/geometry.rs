@@ -11,7 +11,7 @@ use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef,
 use crate::error::Warnings;
 use crate::math::{Bounds, Cluster, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
 use crate::scene::shutter::{Keys, Shutter};
-use crate::scene::{Instance, Material, mask};
+use crate::scene::{Inside, Instance, Material, mask};
 use crate::shape::{self, Mesh, MeshMotion, Placement, RoundMotion, Rounds, Shape};
 
 /// Everything that has a place.
@@ -24,8 +24,8 @@ pub struct Geometry {
     pub placed: Vec<u32>,
     /// The tree.
     pub bvh: Bvh,
-    /// Of each of `instances` whose inside light may walk in, a tree of its own; empty where there is none.
-    pub insides: Vec<Option<Bvh>>,
+    /// Of each of `instances` whose inside light may walk in, that; empty where there is none.
+    pub insides: Vec<Option<Inside>>,
     /// The instances whose insides absorb light, and which they are.
     pub absorbing: Option<(Bvh, Vec<u32>)>,
 }
@@ -90,10 +90,8 @@ pub fn prepare(
             mask: mask::of(instance.visibility, cutout, emits, instance.catcher, links.blocker_class(i)),
         });
         let has_inside = prepared.materials.iter().any(|&m| materials[m as usize].has_inside());
-        insides.push(has_inside.then(|| {
-            let alone = bvh::Instance { blas: 0, mask: u64::MAX, ..boxes[boxes.len() - 1].clone() };
-            Bvh::build(vec![blases[shape].clone()], vec![alone])
-        }));
+        let inside = || Inside::new(instances.len() as u32, &prepared, blases[shape].clone());
+        insides.push(has_inside.then(inside));
         if prepared.materials.iter().any(|&m| materials[m as usize].absorbs()) {
             absorbing.push(instances.len() as u32);
         }

@@ -54,8 +54,12 @@ pub fn uv_set(flow: &mut Flow<'_, '_>, name: &str) -> ValueId {
 /// The attribute of meshes that Random Per Island reads.
 const RANDOM_PER_ISLAND: &str = "random per island";
 
+/// The attribute of meshes that Pointiness reads.
+const POINTINESS: &str = "pointiness of the mesh";
+
 /// Geometry.
 pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId {
+    let of_mesh = |name: &str| Leaf::Attribute { name: name.into(), fallback: [0.0; 4] };
     let leaf = match output {
         "Position" => Leaf::Position,
         "Normal" => return flow.normal(),
@@ -64,10 +68,11 @@ pub fn geometry<'a>(flow: &mut Flow<'a, '_>, _: At<'a>, output: &str) -> ValueId
         "Incoming" => Leaf::Incoming,
         "Parametric" => Leaf::Parametric,
         "Backfacing" => Leaf::Backfacing,
-        "Random Per Island" => Leaf::Attribute { name: RANDOM_PER_ISLAND.into(), fallback: [0.0; 4] },
+        "Random Per Island" => of_mesh(RANDOM_PER_ISLAND),
+        "Pointiness" => of_mesh(POINTINESS),
         _ => {
-            flow.warn(format!("the output {output} of the Geometry node is not supported; 0.5 is taken for it"));
-            return flow.graph.number(0.5);
+            flow.warn(format!("the output {output} of the Geometry node is not supported; 0 is taken for it"));
+            return flow.graph.number(0.0);
         }
     };
     flow.graph.leaf(leaf)
@@ -240,7 +245,8 @@ mod tests {
         scene.set_mesh(1, "mesh", &arrays, &[LayerArray { name: of_mesh, values: &[0.5; 6] }], [&[], &[]]).unwrap();
         if !of_rounds.is_empty() {
             let uvs = [LayerArray { name: of_rounds, values: &[0.5; 2] }];
-            scene.set_rounds(2, "hair", &[0.0; 6], &[1.0; 2], Ends { points: &[2], ..Ends::default() }, &uvs).unwrap();
+            let ends = Ends { points: &[2], ..Ends::default() };
+            scene.set_rounds(2, "hair", &[0.0; 6], &[1.0; 2], ends, [&uvs, &[]]).unwrap();
         }
         let desc = scene.scene(&mut Warnings::new()).unwrap();
         desc.materials[0].aovs[0].color
