@@ -1,10 +1,12 @@
 //! The command line: parse, load, render, write, exit code. One file for each command.
 
+mod costs;
 mod environment;
 mod files;
 mod info;
 mod progress;
 mod render;
+mod resume;
 mod say;
 mod shots;
 
