@@ -43,12 +43,18 @@ fn still() -> SceneDesc {
     builder.desc
 }
 
-fn prepared(settings: &Settings) -> Scene {
-    prepare(still(), &View { camera: None, size: Some([21, 19]) }, settings).unwrap().scene
+fn prepared(size: [u32; 2], settings: &Settings) -> Scene {
+    prepare(still(), &View { camera: None, size: Some(size) }, settings).unwrap().scene
 }
 
-/// Stops after a number of questions whether to go on, which are asked at every row of a tile, and keeps the state that
-/// it asks for at every seventh of them.
+/// Four tiles, three of which are cut.
+const SMALL: [u32; 2] = [21, 19];
+
+/// Enough pixels for an error to be known.
+const LARGE: [u32; 2] = [48, 34];
+
+/// Stops after a number of questions whether to go on, which are asked at every row of a tile, and keeps the states that
+/// it asks for at some of them, fewer than there are rows.
 struct Stops {
     after: u64,
     asked: AtomicU64,
@@ -67,7 +73,7 @@ impl Observer for Stops {
     }
 
     fn wants_state(&self) -> bool {
-        self.asked.load(Ordering::Relaxed) % 7 == 6
+        self.asked.load(Ordering::Relaxed) % 101 == 100
     }
 
     fn save(&self, state: &State<'_>) {
@@ -113,7 +119,7 @@ fn same(one: &Picture, other: &Picture, what: &str) {
 #[test]
 fn what_stops_anywhere_goes_on_to_the_same_bits() {
     for (i, settings) in cases().into_iter().enumerate() {
-        let scene = prepared(&settings);
+        let scene = prepared(SMALL, &settings);
         let whole = render(&scene, &settings, &()).unwrap();
         let (mut times, mut state) = (0, bytes(Start::new(&scene, &settings).unwrap().state()));
         loop {
@@ -146,7 +152,7 @@ fn more_samples_give_the_bits_of_one_render() {
         settings("combined,error", 1),
         Settings { adaptive: true, ..settings("combined,sample_count", 1) },
     ] {
-        let scene = prepared(&base);
+        let scene = prepared(SMALL, &base);
         let spp = |spp| Settings { spp, ..base.clone() };
         let whole = render(&scene, &spp(100), &()).unwrap();
         let mut state = bytes(Start::new(&scene, &base).unwrap().state());
@@ -164,12 +170,14 @@ fn more_samples_give_the_bits_of_one_render() {
 /// A smaller error, from any larger one.
 #[test]
 fn a_tighter_target_gives_the_bits_of_one_render() {
-    let targets = [0.03, 0.026, 0.0215, 0.0185, 0.0165, 0.0145, 0.0125, 0.011];
+    let targets = [0.012, 0.0085, 0.007, 0.006, 0.0052, 0.0046, 0.0041];
     for adaptive in [false, true] {
-        let base = Settings { adaptive, error: Some(1.0), ..settings("combined,sample_count", 1 << 16) };
-        let scene = prepared(&base);
+        let base =
+            Settings { adaptive, error: Some(1.0), max_bounces: 1, ..settings("combined,sample_count", 1 << 12) };
+        let scene = prepared(LARGE, &base);
         let to = |target| Settings { error: Some(target), ..base.clone() };
         let whole = targets.map(|target| render(&scene, &to(target), &()).unwrap());
+        println!("{:?} spp", whole.each_ref().map(|whole| whole.film.samples() / (48 * 34)));
         let mut longer = 0;
         for (i, from) in whole.iter().enumerate() {
             for (to_end, &target) in whole.iter().zip(&targets).skip(i) {
@@ -183,7 +191,8 @@ fn a_tighter_target_gives_the_bits_of_one_render() {
                 assert!(gone_on(&bytes(from.state()), &scene, &to(targets[0]), &()).was_done, "{}", targets[i]);
             }
         }
-        assert!(longer > 20, "{longer} went on");
+        println!("{longer} went on");
+        assert!(longer >= 10, "{longer} went on");
     }
 }
 
@@ -191,7 +200,7 @@ fn a_tighter_target_gives_the_bits_of_one_render() {
 #[test]
 fn time_that_is_spent_is_spent() {
     let base = Settings { time: Some(0.2), ..settings("combined,depth", Settings::NO_LIMIT) };
-    let scene = prepared(&base);
+    let scene = prepared(SMALL, &base);
     let rendered = render(&scene, &base, &()).unwrap();
     assert_eq!(rendered.ended, Ended::Time);
     let again = gone_on(&bytes(rendered.state()), &scene, &base, &());
@@ -205,7 +214,7 @@ fn time_that_is_spent_is_spent() {
 #[test]
 fn states_that_are_cut_off_are_told() {
     let settings = settings("combined,crypto_object,error", 16);
-    let scene = prepared(&settings);
+    let scene = prepared(SMALL, &settings);
     let state = bytes(render(&scene, &settings, &()).unwrap().state());
     for length in (0..state.len()).step_by(state.len() / 50) {
         assert!(Start::read(&scene, &settings, &mut &state[..length]).unwrap().is_err(), "{length}");
@@ -253,9 +262,11 @@ impl Folder {
     /// The program with a scene and a picture of this folder.
     fn command(&self, out: &str, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_penumbra"));
-        command.current_dir(self.0.path()).args(["render", "scene.usda", "-o", out, "--progress", "none"]);
-        if !args.contains(&"--size") {
-            command.args(["--size", "48x32"]);
+        command.current_dir(self.0.path()).args(["render", "scene.usda", "-o", out]);
+        for (name, value) in [("--size", "48x32"), ("--progress", "none")] {
+            if !args.contains(&name) {
+                command.args([name, value]);
+            }
         }
         command.args(args).stdin(Stdio::null()).stderr(Stdio::piped());
         command
@@ -318,8 +329,9 @@ fn a_picture_goes_on_to_more_samples_and_to_a_smaller_error() {
     same(&folder.picture("a.exr"), &folder.picture("whole.exr"), "samples");
     assert!(folder.has("a.exr.state") && !folder.has("whole.exr.state"));
 
-    folder.done("a.exr", &with(&["--error", "0.006", "--resume"]));
-    folder.done("whole.exr", &with(&["--error", "0.006"]));
+    folder.done("a.exr", &with(&["--error", "0.0025", "--resume"]));
+    let told = folder.done("whole.exr", &with(&["--error", "0.0025"]));
+    assert!(!told.contains(" 50 spp"), "no smaller error: {told}");
     same(&folder.picture("a.exr"), &folder.picture("whole.exr"), "error");
 }
 
@@ -355,7 +367,7 @@ fn what_is_of_another_scene_or_of_other_settings_is_refused() {
     folder.done("a.exr", &["--spp", "4", "--resume"]);
     let others: [(&[&str], &str); 8] = [
         (&["--seed", "3"], "seed was 0 and is 3"),
-        (&["--sampler", "halton"], "sampler was sobol and is halton"),
+        (&["--sampler", "independent"], "sampler was sobol and is independent"),
         (&["--size", "40x32"], "size was 48x32 and is 40x32"),
         (&["--filter", "box"], "filter was"),
         (&["--passes", "combined,ao"], "passes was combined and is combined,ao"),
@@ -513,4 +525,34 @@ fn a_state_is_whole_whenever_its_writer_is_killed() {
     assert!(body.len() > 48 * 32 * 36);
     let told = folder.done("a.exr", &["--resume", "--spp", "1"]);
     assert!(told.contains(" of them before)"), "{told}");
+}
+
+/// Where the time goes is told to people, to machines and in the file; what samples spend it on where that is asked for.
+#[test]
+fn where_the_time_goes_is_told() {
+    let folder = Folder::with_stage();
+    let args = ["--spp", "16", "--passes", "combined,ao,shadow,error", "--progress", "json", "--max-bounces", "2"];
+    let line = |told: &str| -> serde_json::Value {
+        let line = told.lines().rfind(|line| line.starts_with('{')).unwrap();
+        serde_json::from_str(line).unwrap()
+    };
+    let told = line(&folder.done("a.exr", &args));
+    assert!(told["ended_by"] == "samples" && told["spp"] == 16.0 && told.get("costs").is_none(), "{told}");
+    let attributes = exr::attributes(&folder.path("a.exr")).unwrap();
+    for name in ["import", "materials", "geometry", "lights", "samples", "errors"] {
+        assert!(told["time_s"][name].as_f64().unwrap() >= 0.0, "{told}");
+        assert!(attributes.contains_key(&format!("penumbra/time/{name}")));
+    }
+    let said = folder.done("b.exr", &[&args[..], &["--costs"]].concat());
+    let told = line(&said);
+    let share = |name: &str| told["costs"][name][0].as_f64().unwrap();
+    let bounces = share("first hit and its light") + share("bounce 1") + share("bounce 2");
+    assert!((bounces - 1.0).abs() < 1e-9 && share("first hit and its light") > 0.1, "{told}");
+    assert!(share("pass ao").is_finite() && share("pass shadow").is_finite());
+    // Neither there nor asked for.
+    assert!(told["costs"].get("effect motion blur").is_none() && told["costs"].get("pass cryptomatte").is_none());
+    assert!(said.contains("a sample takes a thread") && said.contains("  pass ao: "), "{said}");
+    assert!(exr::attributes(&folder.path("b.exr")).unwrap().contains_key("penumbra/cost/bounce 1"));
+    // What measures changes nothing.
+    same(&folder.picture("a.exr"), &folder.picture("b.exr"), "costs");
 }
