@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Where in the input something stands: a file, and a node or prim path in it.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Default, PartialEq, Eq, Hash)]
 pub struct Place {
     /// The file; empty for scenes that come from memory.
     pub file: Option<Arc<Path>>,
@@ -29,6 +29,17 @@ impl Place {
     /// A node of the same file.
     pub fn at(&self, node: impl AsRef<str>) -> Self {
         Self { file: self.file.clone(), node: Some(node.as_ref().into()) }
+    }
+}
+
+impl fmt::Debug for Place {
+    /// With the sign `-` nothing: what is the same elsewhere then reads the same.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.sign_minus() {
+            return f.write_str("Place");
+        }
+        let Self { file, node } = self;
+        f.debug_struct("Place").field("file", file).field("node", node).finish()
     }
 }
 

@@ -1,11 +1,16 @@
 //! From a description to a picture that tells of its making: what the command line and Python share.
 
-use std::time::SystemTime;
+pub mod resume;
+
+pub use resume::identity;
+
+use std::time::{Duration, SystemTime};
 
 use crate::desc::{CameraDesc, SceneDesc};
 use crate::error::Warnings;
 use crate::film::{Doubt, Figure, Film};
 use crate::output::Metadata;
+use crate::output::state::Head;
 use crate::render::Rendered;
 use crate::scene::{Prepared, View};
 use crate::settings::{SETTINGS, Settings};
@@ -66,13 +71,23 @@ pub fn shortfalls(rendered: &Rendered, settings: &Settings) -> Vec<String> {
     list
 }
 
-/// What the picture of `rendered` says about its making; `warnings` are all that were told.
+/// Seconds by what took them: reading, which the caller has timed, building, rendering.
+pub fn times(import: Duration, prepared: &Prepared, rendered: &Rendered) -> Vec<(String, f64)> {
+    let looked = rendered.looked;
+    let rest = [("samples", rendered.elapsed.saturating_sub(looked)), ("errors", looked)];
+    let all = [("import", import)].into_iter().chain(prepared.times.iter().copied()).chain(rest);
+    all.map(|(name, time)| (name.to_owned(), time.as_secs_f64())).collect()
+}
+
+/// What the picture of `rendered` says about its making; `warnings` are all that were told, `identity` is
+/// [what it is made of](identity).
 pub fn metadata(
     scene: String,
     frame: Option<f64>,
     prepared: &Prepared,
     rendered: &Rendered,
     settings: &Settings,
+    identity: Head,
     warnings: &Warnings,
 ) -> Metadata {
     let bad = rendered.film.non_finite();
@@ -94,6 +109,8 @@ pub fn metadata(
             .filter(|def| def.name != "spp" || settings.spp != Settings::NO_LIMIT)
             .map(|def| (def.name.to_owned(), def.get(settings)))
             .collect(),
+        identity,
+        ended_by: resume::name(rendered.ended).to_owned(),
         comments: rendered.interrupted.then(|| format!("interrupted at {spp:.1} samples per pixel")),
         manifests: prepared.scene.ids.manifests(),
         ..Metadata::default()

@@ -2,12 +2,14 @@
 
 mod compare;
 mod converge;
+mod costs;
 mod environment;
 mod files;
 mod given;
 mod info;
 mod progress;
 mod render;
+mod resume;
 mod say;
 mod shots;
 

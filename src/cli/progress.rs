@@ -3,10 +3,12 @@
 use std::io::IsTerminal;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use penumbra::output::Metadata;
 use penumbra::render::{Observer, Progress};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::say;
 
@@ -48,7 +50,7 @@ pub fn interrupted() -> bool {
 /// How progress is told.
 pub enum Reporter {
     Bar(ProgressBar),
-    Json { output: String, frame: Option<f64> },
+    Json { output: String, frame: Option<f64>, last: Mutex<Value> },
     None,
 }
 
@@ -56,7 +58,7 @@ impl Reporter {
     /// By the name that `--progress` takes, for the picture `out` of `frame`.
     pub fn new(kind: &str, out: &Path, frame: Option<f64>) -> Self {
         match kind {
-            "json" => Self::Json { output: out.display().to_string(), frame },
+            "json" => Self::Json { output: out.display().to_string(), frame, last: Mutex::default() },
             "bar" if std::io::stderr().is_terminal() => {
                 let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
                 let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}");
@@ -65,6 +67,18 @@ impl Reporter {
             }
             _ => Self::None,
         }
+    }
+
+    /// Tells machines that the picture is written: the last line again, with where the time went.
+    pub fn written(&self, metadata: &Metadata) {
+        let Self::Json { last, .. } = self else { return };
+        let mut line = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        line["ended_by"] = json!(metadata.ended_by);
+        line["time_s"] = metadata.times.iter().map(|(name, seconds)| (name.clone(), json!(seconds))).collect();
+        if !metadata.costs.is_empty() {
+            line["costs"] = metadata.costs.iter().map(|(name, cost)| (name.clone(), json!(cost))).collect();
+        }
+        say::err(line.to_string());
     }
 
     /// Clears the bar.
@@ -86,7 +100,7 @@ impl Observer for Reporter {
                 let error = progress.outlook.map(|_| format!("  {}", error(progress))).unwrap_or_default();
                 bar.set_message(format!("{:.0}{of} spp  {left} left{error}", progress.spp));
             }
-            Self::Json { output, frame } => {
+            Self::Json { output, frame, last } => {
                 let mut line = json!({
                     "output": output,
                     "frame": frame,
@@ -103,6 +117,7 @@ impl Observer for Reporter {
                     line["to_target_s"] = json!(progress.to_target());
                 }
                 say::err(line.to_string());
+                *last.lock().unwrap_or_else(PoisonError::into_inner) = line;
             }
             Self::None => {}
         }

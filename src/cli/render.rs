@@ -1,6 +1,7 @@
 //! `penumbra render`: a scene to a multi-layer EXR, with a PNG preview if asked for.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::parser::ValueSource;
@@ -10,14 +11,15 @@ use penumbra::error::{Place, Warnings};
 use penumbra::film::{Quantity, SampleId};
 use penumbra::job;
 use penumbra::output::{exr, png};
-use penumbra::render::Rendered;
+use penumbra::render::{Costs, Rendered};
 use penumbra::scene::{Cache, Prepared, prepare_with};
 use penumbra::settings::Settings;
 
 use super::files::{Files, save};
 use super::progress::{Reporter, catch_interrupts, clock, interrupted, rendering};
+use super::resume::Begun;
 use super::shots::{self, Shot};
-use super::{Outcome, environment, given, say, scene};
+use super::{Outcome, costs, environment, given, resume, say, scene};
 
 pub fn command() -> Command {
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
@@ -50,6 +52,8 @@ pub fn command() -> Command {
                 .default_value("bar")
                 .help("How progress is told on stderr; the bar only on a terminal"),
         )
+        .args(resume::args())
+        .arg(costs::arg())
         .arg(Arg::new("strict").long("strict").action(ArgAction::SetTrue).help("Take warnings for errors"))
         .arg(
             Arg::new("debug-sample")
@@ -98,7 +102,9 @@ fn render_frame(
     let is_debug = args.contains_id("debug-sample");
     // A name that was typed is checked before anything is read.
     let typed = if args.contains_id("output") { Some(Files::of(args, frame, None)?) } else { None };
+    let start = Instant::now();
     let (mut desc, mut warnings) = scene::load(args, frame, settings.passes.needs(Quantity::Vector))?;
+    let import = start.elapsed();
     let shots = shots::of(args, frame, &desc, &mut warnings)?;
     let files = match typed {
         None if !is_debug => {
@@ -115,7 +121,7 @@ fn render_frame(
         let mut desc = if i == last { std::mem::take(&mut desc) } else { desc.clone() };
         desc.render = shot.render(&desc.render);
         let files = if i == 0 { files.as_ref() } else { None };
-        let job = Job { args, frame, shot, files };
+        let job = Job { args, frame, shot, files, import };
         if let Outcome::Interrupted = job.render(desc, settings, &mut cache, warnings.clone(), told)? {
             if i < last {
                 say::err(format!("not rendered: {}", names(&shots[i + 1..])));
@@ -139,6 +145,8 @@ struct Job<'a> {
     shot: &'a Shot,
     /// Where the first picture and its preview go, of the first render of a frame.
     files: Option<&'a Files>,
+    /// Time that reading the scene took.
+    import: Duration,
 }
 
 impl Job<'_> {
@@ -158,7 +166,19 @@ impl Job<'_> {
             Some(ValueSource::CommandLine) => settings.clone(),
             _ => job::with_own_passes(settings, &desc, &mut warnings),
         };
-        let prepared = prepare_with(desc, &view, settings, cache)?;
+        let mut outs = self.outs();
+        let mut begun = None;
+        if let (Some(out), false) = (outs.next(), args.contains_id("debug-sample")) {
+            let preview = self.files.and_then(|files| files.preview.as_deref());
+            let others: Vec<&Path> = outs.chain(preview).collect();
+            let identity = job::identity(&desc, &view, settings);
+            begun = Some((out, Begun::of(args, out, &others, identity, settings)?));
+        }
+        if let Some((out, what)) = begun.as_ref().and_then(|(out, begun)| Some((out, begun.done()?))) {
+            say::err(format!("{}: {what}", out.display()));
+            return Ok(Outcome::Done);
+        }
+        let mut prepared = prepare_with(desc, &view, settings, cache)?;
         warnings.extend(prepared.warnings.clone());
         tell(&warnings, told);
         if args.get_flag("strict") && warnings.faults() > 0 {
@@ -167,25 +187,37 @@ impl Job<'_> {
         if let Some(&[x, y, index]) = args.get_one::<[u64; 3]>("debug-sample") {
             return debug_sample(&prepared.scene, settings, x, y, index);
         }
-        let picture = self.shot.pictures.first().map(|(out, _)| out);
-        let Some(out) = self.files.map(|files| &files.out).or(picture) else { return Ok(Outcome::Done) };
+        let Some((out, mut begun)) = begun else { return Ok(Outcome::Done) };
         rendering(true);
         let kind = args.get_one::<String>("progress").expect("has a default");
         let reporter = Reporter::new(kind, out, self.frame);
-        let rendered = penumbra::render::render(&prepared.scene, settings, &reporter);
+        let rendered = begun.render(&prepared.scene, settings, &reporter);
         reporter.finish();
-        self.write(out, &prepared, &rendered?, settings, &mut warnings)
+        let (rendered, before) = rendered?;
+        let costs = match args.get_flag("costs") && !rendered.interrupted {
+            true => Some(penumbra::render::costs(&mut prepared.scene, settings)?),
+            false => None,
+        };
+        let done = Done { prepared: &prepared, rendered: &rendered, before, begun: &begun, reporter: &reporter, costs };
+        self.write(out, &done, settings, &mut warnings)
     }
 
-    /// Writes the pictures of what was rendered, and says so.
+    /// Where its pictures go.
+    fn outs(&self) -> impl Iterator<Item = &Path> {
+        let typed = self.files.map(|files| files.out.as_path());
+        let first = typed.or(self.shot.pictures.first().map(|(out, _)| out.as_path()));
+        first.into_iter().chain(self.shot.pictures.iter().skip(1).map(|(out, _)| out.as_path()))
+    }
+
+    /// Writes the pictures of what was rendered and its state, and says so.
     fn write(
         &self,
         out: &Path,
-        prepared: &Prepared,
-        rendered: &Rendered,
+        done: &Done<'_>,
         settings: &Settings,
         warnings: &mut Warnings,
     ) -> anyhow::Result<Outcome> {
+        let Done { prepared, rendered, before, begun, reporter, costs } = done;
         let (args, scene, film) = (self.args, &prepared.scene, &rendered.film);
         let place = Place::file(scene::path(args));
         let bad = film.non_finite();
@@ -203,7 +235,11 @@ impl Job<'_> {
             warnings.push(&place, what);
         }
         let name = scene::path(args).display().to_string();
-        let metadata = job::metadata(name, self.frame, prepared, rendered, settings, warnings);
+        let mut metadata =
+            job::metadata(name, self.frame, prepared, rendered, settings, begun.identity.clone(), warnings);
+        metadata.times = job::times(self.import, prepared, rendered);
+        let of_costs = costs.iter().flat_map(|costs| &costs.list);
+        metadata.costs = of_costs.map(|cost| (cost.name.clone(), [cost.share, cost.error])).collect();
         let picture = film.develop();
         let is_part = prepared.whole != scene.size || prepared.corner != [0; 2];
         let window = is_part.then_some(exr::Window { corner: prepared.corner, whole: prepared.whole });
@@ -222,6 +258,8 @@ impl Job<'_> {
             let layer = picture.layer("Combined").or(picture.layers.first()).map_or("", |layer| &layer.name);
             png::write(preview, &picture, layer).context("the EXR is written, the preview is not")?;
         }
+        let goes_on = begun.keep(rendered);
+        reporter.written(&metadata);
         if args.get_flag("strict") && bad.count > 0 {
             bail!("--strict: {} samples were not finite; {} is written", bad.count, saved.display());
         }
@@ -230,7 +268,8 @@ impl Job<'_> {
         }
         let spp = job::samples_per_pixel(film);
         if rendered.interrupted {
-            say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}", saved.display()));
+            let advice = if goes_on { "; --resume goes on from there" } else { "" };
+            say::err(format!("interrupted at {spp:.1} samples per pixel: saved {}{advice}", saved.display()));
             return Ok(Outcome::Interrupted);
         }
         rendering(false);
@@ -239,9 +278,24 @@ impl Job<'_> {
         let error = job::error_sentence(rendered).map(|error| format!(", {error}")).unwrap_or_default();
         let others = pictures.iter().skip(1).map(|(out, _)| format!(", {}", out.display())).collect::<String>();
         let (out, camera) = (out.display(), &prepared.camera);
-        say::err(format!("{out}{others}: {width}x{height}, camera {camera}, {spp:.0} spp, {seconds}{error}"));
+        let first = if *before > 0.0 { format!(" ({before:.0} of them before)") } else { String::new() };
+        say::err(format!("{out}{others}: {width}x{height}, camera {camera}, {spp:.0} spp{first}, {seconds}{error}"));
+        if let Some(costs) = costs {
+            costs::tell(costs, &metadata);
+        }
         Ok(Outcome::Done)
     }
+}
+
+/// What a render gave, to be written.
+struct Done<'a> {
+    prepared: &'a Prepared,
+    rendered: &'a Rendered,
+    /// Samples per pixel that there were before.
+    before: f64,
+    begun: &'a Begun,
+    reporter: &'a Reporter,
+    costs: Option<Costs>,
 }
 
 /// Prints those of `warnings` that were not told for an earlier frame.

@@ -10,6 +10,7 @@ mod aov;
 mod camera;
 mod check;
 mod closure;
+mod digest;
 mod framing;
 pub mod graph;
 mod image;

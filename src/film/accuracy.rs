@@ -166,16 +166,17 @@ impl PixelError {
 impl PixelErrors {
     /// The picture's numbers.
     pub fn accuracy(&self) -> Accuracy {
-        let display = self.figure(|x, y| {
+        let rel_mse = self.figure(|x, y| std::array::from_fn(|c| 1.0 / (self.median(x, y, c).powi(2) + DARK)));
+        Accuracy { rmse: root(self.figure(|_, _| [1.0; 3])), rel_mse, display: self.display() }
+    }
+
+    /// The error on the display's scale alone.
+    pub fn display(&self) -> Result<Figure, Doubt> {
+        root(self.figure(|x, y| {
             let around = self.square(x, y, 1).map(|i| (self.pixels[i].luminance(), 1.0));
             let (sum, n) = around.fold((0.0, 0.0), |(sum, n), (l, one)| (sum + l, n + one));
             [display_slope(sum / n).powi(2); 3]
-        });
-        let rel_mse = self.figure(|x, y| std::array::from_fn(|c| 1.0 / (self.median(x, y, c).powi(2) + DARK)));
-        let root = |figure: Result<Figure, Doubt>| {
-            figure.map(|Figure { value, low, high }| Figure { value: value.sqrt(), low: low.sqrt(), high: high.sqrt() })
-        };
-        Accuracy { rmse: root(self.figure(|_, _| [1.0; 3])), rel_mse, display: root(display) }
+        }))
     }
 
     /// Middle one of the values of a pixel and its neighbours: noise, and a bright sample most of all, would make a
@@ -187,19 +188,23 @@ impl PixelErrors {
     }
 
     /// Mean over pixels and channels of variance × weight.
-    fn figure(&self, weights: impl Fn(usize, usize) -> [f64; 3]) -> Result<Figure, Doubt> {
+    fn figure(&self, weights: impl Fn(usize, usize) -> [f64; 3] + Sync) -> Result<Figure, Doubt> {
         let k = REPLICATES as f64;
-        let (mut sum, mut squared, mut plain) = (0.0, 0.0, 0.0);
-        let mut parts = Vec::with_capacity(self.pixels.len());
-        for (i, pixel) in self.pixels.iter().enumerate() {
+        let of_pixel = |(i, pixel): (usize, &PixelError)| {
             let weights = weights(i % self.width, i / self.width);
             let part: f64 = weights.iter().zip(pixel.variance).map(|(weight, v)| weight * v).sum();
+            // As if channels went along with each other, when the spread is largest.
+            let channels = weights.iter().zip(pixel.variance_squared);
+            (part, weights.iter().sum::<f64>() * channels.map(|(weight, v2)| weight * v2).sum::<f64>())
+        };
+        let pixels: Vec<(f64, f64)> = self.pixels.par_iter().enumerate().map(of_pixel).collect();
+        let (mut sum, mut squared, mut plain) = (0.0, 0.0, 0.0);
+        let mut parts = Vec::with_capacity(pixels.len());
+        for (part, part_squared) in pixels {
             parts.push(part);
             sum += part;
             plain += part * part;
-            // As if channels went along with each other, when the spread is largest.
-            let channels = weights.iter().zip(pixel.variance_squared);
-            squared += weights.iter().sum::<f64>() * channels.map(|(weight, v2)| weight * v2).sum::<f64>();
+            squared += part_squared;
         }
         if sum <= 0.0 {
             return Ok(Figure { value: 0.0, low: 0.0, high: 0.0 });
@@ -259,6 +264,10 @@ impl PixelErrors {
         let width = self.width;
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
+}
+
+fn root(figure: Result<Figure, Doubt>) -> Result<Figure, Doubt> {
+    figure.map(|Figure { value, low, high }| Figure { value: value.sqrt(), low: low.sqrt(), high: high.sqrt() })
 }
 
 /// Slope at `y` of the curve from luminance to display values: sRGB's (IEC 61966-2-1) up to white, and beyond, where

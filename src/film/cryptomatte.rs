@@ -133,6 +133,23 @@ impl Matte {
         out
     }
 
+    /// Ids and coverages in the order in which they came.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (u32, f32)> {
+        let spill = self.spill.iter().flat_map(|spill| spill.iter());
+        self.inline.iter().filter(|entry| entry.0 != 0).chain(spill).copied()
+    }
+
+    /// Of what [`Self::entries`] gave.
+    pub(super) fn of_entries(entries: &[(u32, f32)]) -> Self {
+        let mut matte = Self::default();
+        let (inline, spill) = entries.split_at(entries.len().min(INLINE));
+        matte.inline[..inline.len()].copy_from_slice(inline);
+        if !spill.is_empty() {
+            matte.spill = Some(Box::new(spill.to_vec()));
+        }
+        matte
+    }
+
     pub(super) fn heap_bytes(&self) -> usize {
         self.spill.as_ref().map_or(0, |spill| size_of::<Vec<Entry>>() + spill.capacity() * size_of::<Entry>())
     }

@@ -74,6 +74,16 @@ impl Replicates {
         self.largest[pixel] = self.largest[pixel].max((weight * brought).abs());
     }
 
+    /// All that is summed up, for [saving](super::tile::Tile::save): sums, counts, largest.
+    pub(super) fn arrays(&self) -> (&[f64], &[u32], &[f32]) {
+        (&self.sums, &self.counts, &self.largest)
+    }
+
+    /// The same, to be filled.
+    pub(super) fn arrays_mut(&mut self) -> (&mut [f64], &mut [u32], &mut [f32]) {
+        (&mut self.sums, &mut self.counts, &mut self.largest)
+    }
+
     /// The largest that a sample of the pixel brought.
     pub(super) fn largest(&self, pixel: usize) -> f32 {
         self.largest[pixel]

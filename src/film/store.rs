@@ -4,6 +4,7 @@
 //! expected value 1. Dividing by N and not by `Σ w` keeps the estimate unbiased for filters with
 //! negative lobes too, whose `Σ w` can come near 0. Sums are `f64`.
 
+use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 use super::chosen::Chosen;
@@ -84,6 +85,31 @@ impl Film {
     pub fn samples(&self) -> u64 {
         let of_tile = |tile: &Tile| tile.pixels().map(|(x, y)| u64::from(tile.count(x, y))).sum::<u64>();
         self.tiles.iter().map(of_tile).sum()
+    }
+
+    /// Writes all that samples have left, without loss.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.tiles.iter().try_for_each(|tile| tile.save(out))
+    }
+
+    /// Takes in what [`Film::save`] has written of a film of the same size and passes.
+    ///
+    /// # Errors
+    /// Those of `from`; data that no film has. The film is then of no use.
+    pub fn load(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        self.tiles.iter_mut().try_for_each(|tile| tile.load(from))
+    }
+
+    /// Fewest and most samples that a pixel was given, dropped ones among them, and their sum.
+    pub fn given(&self) -> (u32, u32, u64) {
+        let all = self.tiles.iter().flat_map(|tile| (0..tile.pixels().count()).map(|i| tile.given(i)));
+        let count = |(least, most, sum): (u32, u32, u64), given: u32| {
+            (least.min(given), most.max(given), sum + u64::from(given))
+        };
+        all.fold((u32::MAX, 0, 0), count)
     }
 
     /// Memory that it holds.

@@ -1,6 +1,9 @@
 //! A square of pixels and the sums behind them, owned by one thread at a time.
 
+mod state;
+
 use std::array;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::aov::Aov;
@@ -133,6 +136,8 @@ pub struct Tile {
     sums: Vec<f64>,
     /// Samples taken in, per pixel.
     counts: Vec<u32>,
+    /// Samples that were dropped, by pixel; few pixels have any.
+    dropped: BTreeMap<u32, u32>,
     /// Per pixel; empty where no pass needs it.
     first_hits: Vec<FirstHit>,
     /// Per pixel, per kind; empty where no pass needs it.
@@ -159,6 +164,7 @@ impl Tile {
             replicates: (!layout.replicated.is_empty()).then(|| Replicates::new(pixels, layout.replicated.clone())),
             layout,
             counts: vec![0; pixels],
+            dropped: BTreeMap::new(),
             first_hits: vec![FirstHit::BACKGROUND; first_hits],
             mattes,
             non_finite: NonFinite::default(),
@@ -197,6 +203,7 @@ impl Tile {
         let finite = finite && sample.aovs.iter().all(|value| value.is_finite());
         if !coverage.is_finite() || !finite {
             self.non_finite.note(id);
+            *self.dropped.entry(pixel as u32).or_default() += 1;
             return false;
         }
 
@@ -237,6 +244,13 @@ impl Tile {
     /// Samples taken in at a pixel of this tile.
     pub fn count(&self, x: u32, y: u32) -> u32 {
         self.counts[self.index(x, y)]
+    }
+
+    /// Samples of pixel `i`, counted as [`Tile::pixels`] does, that it was given, dropped ones among them: the index of
+    /// the next.
+    pub fn given(&self, i: usize) -> u32 {
+        let dropped = if self.dropped.is_empty() { None } else { self.dropped.get(&(i as u32)) };
+        self.counts[i] + dropped.copied().unwrap_or(0)
     }
 
     /// What was dropped.

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod cluster;
+mod digest;
 mod frame;
 mod motion;
 mod normal;
@@ -17,6 +18,7 @@ mod transform;
 
 pub use bounds::Bounds;
 pub use cluster::Cluster;
+pub use digest::Digest;
 pub use frame::{Frame, orthonormal_pair};
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 pub use motion::{MovingTransform, Times, traced};

@@ -195,6 +195,26 @@ fn describe_cryptomatte(attributes: &mut LayerAttributes, manifest: &Manifest, o
     add("manifest", &manifest.to_json());
 }
 
+/// The texts in the header of a file's first part, by name.
+///
+/// # Errors
+/// [`Error::Io`] where it can't be opened, [`Error::Invalid`] where it is broken.
+pub fn attributes(path: &Path) -> Result<BTreeMap<String, String>> {
+    let cant_read = |source| Error::io(path, "can't read", source);
+    let mut file = BufReader::new(File::open(path).map_err(cant_read)?);
+    let meta = MetaData::read_from_buffered(&mut file, false).map_err(|error| match error {
+        exr::error::Error::Io(source) if source.kind() != io::ErrorKind::UnexpectedEof => cant_read(source),
+        other => Error::invalid(&Place::file(path), format!("not a sound EXR file: {other}")),
+    })?;
+    let utf8 = |text: &Text| String::from_utf8_lossy(text.as_slice()).into_owned();
+    let texts = meta.headers.first().into_iter().flat_map(|header| &header.own_attributes.other);
+    let texts = texts.filter_map(|(name, value)| match value {
+        AttributeValue::Text(value) => Some((utf8(name), utf8(value))),
+        _ => None,
+    });
+    Ok(texts.collect())
+}
+
 /// Reads every pass of a file, of one part or many, full names kept ("ViewLayer.Combined"); channels
 /// without a dot in their name are grouped under their part's name. Half floats are widened.
 ///

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 use crate::error::{Error, Result};
 
@@ -27,7 +28,32 @@ pub(super) fn replace(path: &Path, write: impl FnOnce(&File) -> io::Result<()>) 
     drop(file);
     fs::rename(&temporary, &target).map_err(failed)?;
     std::mem::forget(leftover);
+    // The new name is on the disk, too, where the system offers that.
+    if let Some(folder) = target.parent() {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
     Ok(())
+}
+
+/// A temporary file that was not written to for so long has lost its writer.
+const ABANDONED: Duration = Duration::from_secs(60);
+
+/// Removes the temporary files that killed processes have left of `path`.
+pub(super) fn sweep(path: &Path) {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let Some(name) = target.file_name().map(|name| format!(".{}.", name.to_string_lossy())) else { return };
+    let is_ours = |file: &str| {
+        let middle = file.strip_prefix(&name).and_then(|rest| rest.strip_suffix(".part"));
+        middle.is_some_and(|middle| !middle.is_empty() && middle.chars().all(|c| c.is_ascii_digit() || c == '-'))
+    };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // What can't be listed or removed does no harm but to the disk's room.
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|at| at.elapsed().ok());
+        if is_ours(&entry.file_name().to_string_lossy()) && age.is_some_and(|age| age > ABANDONED) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Removes the file on every way out but the good one, a panic included.
@@ -102,6 +128,27 @@ mod tests {
         }
         check_writable(&path).expect("writable");
         assert_eq!(names(folder.path()), ["out.png"]);
+    }
+
+    #[test]
+    fn what_killed_writers_left_is_swept_away() {
+        let folder = tempfile::tempdir().expect("folder");
+        let old = std::time::SystemTime::now() - 2 * ABANDONED;
+        for (name, is_old) in [
+            (".out.state.12-0.part", true),
+            (".out.state.13-7.part", false),
+            (".out.state.x.part", true),
+            (".other.state.12-0.part", true),
+        ] {
+            let file = File::create(folder.path().join(name)).expect("written");
+            if is_old {
+                file.set_modified(old).expect("dated");
+            }
+        }
+        sweep(&folder.path().join("out.state"));
+        let mut left = names(folder.path());
+        left.sort();
+        assert_eq!(left, [".other.state.12-0.part", ".out.state.13-7.part", ".out.state.x.part"]);
     }
 
     #[test]

@@ -36,6 +36,15 @@ pub struct Metadata {
     pub settings: Vec<(String, String)>,
     /// Who owns the picture.
     pub owner: Option<String>,
+    /// Where the time went: seconds by what took them.
+    pub times: Vec<(String, f64)>,
+    /// Shares of a sample's time by what they went into, with their standard errors, where that was measured.
+    pub costs: Vec<(String, [f64; 2])>,
+    /// What made the picture, as far as it changes a sample, as names and values: see
+    /// [`identity`](crate::job::identity).
+    pub identity: Vec<(String, String)>,
+    /// What ended the render, as "samples".
+    pub ended_by: String,
     /// Free text.
     pub comments: Option<String>,
     /// Names behind the Cryptomatte ids.
@@ -45,6 +54,12 @@ pub struct Metadata {
 impl Metadata {
     /// Name and version of this engine.
     pub const SOFTWARE: &'static str = concat!("Penumbra ", env!("CARGO_PKG_VERSION"));
+
+    /// The attribute that holds [`Metadata::ended_by`].
+    pub const ENDED_BY: &'static str = "penumbra/ended_by";
+
+    /// The attribute that holds [`Metadata::identity`], as JSON.
+    pub const IDENTITY: &'static str = "penumbra/identity";
 
     /// Attributes other than the standard's own, as name and text.
     pub(super) fn attributes(&self) -> Vec<(String, String)> {
@@ -74,6 +89,18 @@ impl Metadata {
         }
         for (name, value) in &self.settings {
             add(&format!("penumbra/settings/{name}"), value.clone());
+        }
+        for (name, seconds) in &self.times {
+            add(&format!("penumbra/time/{name}"), format!("{seconds:.3}"));
+        }
+        for (name, [share, error]) in &self.costs {
+            add(&format!("penumbra/cost/{name}"), format!("{share:.4} {error:.4}"));
+        }
+        if !self.ended_by.is_empty() {
+            add(Self::ENDED_BY, self.ended_by.clone());
+        }
+        if !self.identity.is_empty() {
+            add(Self::IDENTITY, serde_json::to_string(&self.identity).unwrap_or_default());
         }
         list
     }

@@ -16,7 +16,8 @@ use crate::error::{Place, Result, Warnings};
 use crate::film::Quantity;
 use crate::import::{self, ImportOptions};
 use crate::job;
-use crate::render::render as trace;
+use crate::job::resume::{self, Saver};
+use crate::render::{Start, render_from};
 use crate::scene::prepare;
 use crate::settings::{SETTINGS, Settings};
 
@@ -32,9 +33,13 @@ enum Source<'py> {
 /// be a list. `observer(progress)` is called on this thread at least 20 times a second with a dict of
 /// done, spp, target_spp, elapsed, remaining, error, error_at_end, error_target and to_target (or None where
 /// nothing is new), and stops the render by a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
+///
+/// `state` names a file: the render goes on from what it holds, where it is there, as if it had never stopped, and
+/// leaves all that it takes to go on in it; with `checkpoint` that is saved every so many seconds, too.
 #[pyfunction]
 #[pyo3(signature = (scene, *, camera=None, size=None, frame=None, subdivision=2, variants=Vec::new(),
-    observer=None, on_picture=None, picture_interval=1.0, **settings))]
+    observer=None, on_picture=None, picture_interval=1.0, state=None,
+    checkpoint=None, **settings))]
 pub fn render(
     py: Python<'_>,
     scene: &Bound<'_, PyAny>,
@@ -46,6 +51,8 @@ pub fn render(
     observer: Option<Py<PyAny>>,
     on_picture: Option<Py<PyAny>>,
     picture_interval: f64,
+    state: Option<PathBuf>,
+    checkpoint: Option<f64>,
     settings: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Picture> {
     let (settings, passes_given) = settings_of(settings)?;
@@ -58,6 +65,12 @@ pub fn render(
     };
     let picture_interval = Duration::try_from_secs_f64(picture_interval)
         .map_err(|_| PyValueError::new_err("picture_interval must be a number of seconds, not negative"))?;
+    let is_interval = |seconds: f64| (seconds >= 1.0).then(|| Duration::try_from_secs_f64(seconds).ok()).flatten();
+    let every = checkpoint.map(|seconds| {
+        let what = "checkpoint must be a number of seconds, 1 or more";
+        is_interval(seconds).ok_or_else(|| PyValueError::new_err(what))
+    });
+    let every = every.transpose()?;
     let watch = Watch { observer, on_picture, picture_interval };
     let vectors = settings.passes.needs(Quantity::Vector);
     let options = ImportOptions { frame, subdivision, variants, vectors, ..ImportOptions::default() };
@@ -70,13 +83,33 @@ pub fn render(
     run(py, &watch, |mailbox| {
         let view = job::view(camera, size, &desc, &mut warnings);
         let settings = if passes_given { settings } else { job::with_own_passes(&settings, &desc, &mut warnings) };
+        let identity = state.as_ref().map(|_| job::identity(&desc, &view, &settings)).unwrap_or_default();
+        let found = match &state {
+            Some(path) => resume::open(path, &identity)?,
+            None => None,
+        };
         let prepared = prepare(desc, &view, &settings)?;
         warnings.extend(prepared.warnings.clone());
-        let rendered = trace(&prepared.scene, &settings, mailbox)?;
+        let start = match found {
+            Some(file) => resume::read(file, &prepared.scene, &settings)?,
+            None => Start::new(&prepared.scene, &settings)?,
+        };
+        let rendered = match &state {
+            None => render_from(start, &prepared.scene, &settings, mailbox)?,
+            Some(path) => {
+                let saver = Saver::new(mailbox, path.clone(), identity.clone(), every);
+                let rendered = render_from(start, &prepared.scene, &settings, &saver)?;
+                let failure = saver.failure().or_else(|| resume::save(path, &identity, &rendered).err());
+                if let Some(error) = failure {
+                    warnings.push(&Place::default(), format!("the state could not be saved: {error}"));
+                }
+                rendered
+            }
+        };
         for what in job::shortfalls(&rendered, &settings) {
             warnings.push(&Place::default(), what);
         }
-        let metadata = job::metadata(name, frame, &prepared, &rendered, &settings, &warnings);
+        let metadata = job::metadata(name, frame, &prepared, &rendered, &settings, identity, &warnings);
         Ok(Picture { picture: rendered.film.develop(), metadata, half, interrupted: rendered.interrupted })
     })
 }

@@ -5,7 +5,7 @@
 //! it gets is biased: by chance too dark, it is taken for clean and stays so. Here a pixel's number follows from its
 //! neighbours' samples, which are independent of its own, and never from itself.
 
-use std::ops::Range;
+use std::io::{self, Read, Write};
 
 use rayon::prelude::*;
 
@@ -22,16 +22,20 @@ const LEAST_SHARE: f64 = 0.02;
 const MOST_GROWTH: u32 = 4;
 
 /// The plan of a render.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Plan {
     tiles: Vec<TilePlan>,
     pixels: u64,
 }
 
-/// Per pixel of a tile, row by row, samples taken and samples wanted.
-#[derive(Debug)]
+/// Per pixel of a tile, row by row.
+#[derive(Clone, Debug)]
 struct TilePlan {
-    taken: Vec<u32>,
+    /// Samples that there were when the errors were looked at.
+    base: Vec<u32>,
+    /// What its neighbours' errors were then; empty where nothing is known.
+    weights: Vec<f64>,
+    /// Samples that are wanted.
     goal: Vec<u32>,
 }
 
@@ -39,70 +43,93 @@ impl Plan {
     pub(super) fn new(film: &Film) -> Self {
         let tile = |tile: &crate::film::Tile| {
             let pixels = tile.pixels().count();
-            TilePlan { taken: vec![0; pixels], goal: vec![0; pixels] }
+            TilePlan { base: vec![0; pixels], weights: Vec::new(), goal: vec![0; pixels] }
         };
         let pixels = u64::from(film.width()) * u64::from(film.height());
         Self { tiles: film.tiles().iter().map(tile).collect(), pixels }
     }
 
     /// Samples per pixel when the goals are reached, the mean.
-    pub(super) fn spp(&self) -> f64 {
+    #[cfg(test)]
+    fn spp(&self) -> f64 {
         let sum = self.tiles.iter().flat_map(|tile| &tile.goal).map(|&goal| u64::from(goal)).sum::<u64>();
         sum as f64 / self.pixels as f64
     }
 
-    /// Sets the goals for `spp` samples per pixel in the mean; the same for each where nothing is known of `errors`.
-    pub(super) fn aim(&mut self, film: &Film, errors: Option<&PixelErrors>, spp: u32) {
+    /// From now on goals follow from `errors` of the film as it is; from none they are the same for every pixel.
+    pub(super) fn learn(&mut self, film: &Film, errors: Option<&PixelErrors>) {
         let weights = errors.map(|errors| weights(film, errors));
-        let Some(weights) = weights.filter(|weights| weights.iter().flatten().any(|&w| w > 0.0)) else {
-            self.tiles.iter_mut().for_each(|tile| tile.goal.iter_mut().for_each(|goal| *goal = spp.max(*goal)));
+        let weights = weights.filter(|weights| weights.iter().flatten().any(|&w| w > 0.0));
+        let mut weights = weights.map(Vec::into_iter);
+        for (plan, tile) in self.tiles.iter_mut().zip(film.tiles()) {
+            plan.weights = weights.as_mut().and_then(Iterator::next).unwrap_or_default();
+            plan.base.iter_mut().enumerate().for_each(|(i, base)| *base = tile.given(i));
+        }
+    }
+
+    /// Sets the goals for `spp` samples per pixel in the mean. Those for more are no smaller in any pixel: on the way to
+    /// more the fewer are passed.
+    pub(super) fn aim(&mut self, spp: u32) {
+        if self.tiles.iter().any(|tile| tile.weights.is_empty()) {
+            for TilePlan { base, goal, .. } in &mut self.tiles {
+                base.iter().zip(goal).for_each(|(&base, goal)| *goal = spp.max(base));
+            }
             return;
-        };
+        }
         let budget = u64::from(spp) * self.pixels;
         let sum = |scale: f64| {
-            let of_tile = |(tile, weights): (&TilePlan, &Vec<f64>)| {
-                tile.taken.iter().zip(weights).map(|(&taken, &w)| u64::from(goal(taken, scale * w))).sum::<u64>()
+            let of_tile = |tile: &TilePlan| {
+                tile.base.iter().zip(&tile.weights).map(|(&base, &w)| u64::from(goal(base, scale * w))).sum::<u64>()
             };
-            self.tiles.par_iter().zip(&weights).map(of_tile).sum::<u64>()
+            self.tiles.par_iter().map(of_tile).sum::<u64>()
         };
         // The scale that spends the budget, by bisection of its logarithm's range.
-        let largest = weights.iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
+        let largest = self.tiles.iter().flat_map(|tile| &tile.weights).fold(0.0, |a: f64, &b| a.max(b));
         let (mut low, mut high) = (0.0, f64::from(u32::MAX) / largest);
         for _ in 0..64 {
             let middle = if low > 0.0 { f64::sqrt(low * high) } else { high * 1e-9 };
             if sum(middle) <= budget { low = middle } else { high = middle }
         }
-        for (tile, weights) in self.tiles.iter_mut().zip(&weights) {
-            for ((wanted, &taken), &w) in tile.goal.iter_mut().zip(&tile.taken).zip(weights) {
-                *wanted = goal(taken, low * w);
+        for TilePlan { base, weights, goal: goals } in &mut self.tiles {
+            for ((wanted, &base), &w) in goals.iter_mut().zip(&*base).zip(&*weights) {
+                *wanted = goal(base, low * w);
             }
         }
     }
 
-    /// The samples of a pixel, by its tile and place in it, in a wave of at most `longest`.
-    pub(super) fn samples(&self, tile: usize, pixel: usize, longest: u32) -> Range<u32> {
-        let TilePlan { taken, goal } = &self.tiles[tile];
-        taken[pixel]..goal[pixel].min(taken[pixel] + longest)
+    /// Samples that are wanted of a pixel, by its tile and place in it.
+    pub(super) fn goal(&self, tile: usize, pixel: usize) -> u32 {
+        self.tiles[tile].goal[pixel]
     }
 
-    /// Takes a wave for done; true where the goals are reached by it.
-    pub(super) fn advance(&mut self, longest: u32) -> bool {
-        let mut reached = true;
-        for TilePlan { taken, goal } in &mut self.tiles {
-            for (taken, &goal) in taken.iter_mut().zip(goal.iter()) {
-                *taken = goal.min(*taken + longest);
-                reached &= *taken == goal;
-            }
+    /// Writes what goals follow from.
+    pub(super) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        for TilePlan { base, weights, goal: _ } in &self.tiles {
+            out.write_all(bytemuck::cast_slice(base))?;
+            out.write_all(&[u8::from(!weights.is_empty())])?;
+            out.write_all(bytemuck::cast_slice(weights))?;
         }
-        reached
+        Ok(())
+    }
+
+    /// Takes it in again.
+    pub(super) fn load(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        for TilePlan { base, weights, goal: _ } in &mut self.tiles {
+            from.read_exact(bytemuck::cast_slice_mut(base))?;
+            let mut is_known = [0];
+            from.read_exact(&mut is_known)?;
+            *weights = if is_known[0] == 1 { vec![0.0; base.len()] } else { Vec::new() };
+            from.read_exact(bytemuck::cast_slice_mut(weights))?;
+        }
+        Ok(())
     }
 }
 
 /// Whole rounds of the replicates, never fewer than there are.
-fn goal(taken: u32, wanted: f64) -> u32 {
+fn goal(base: u32, wanted: f64) -> u32 {
     let round = REPLICATES as u32;
-    let wanted = wanted.min(f64::from(taken.saturating_mul(MOST_GROWTH))) as u32;
-    taken.max(wanted.div_ceil(round).saturating_mul(round))
+    let wanted = wanted.min(f64::from(base.saturating_mul(MOST_GROWTH))) as u32;
+    base.max(wanted.div_ceil(round).saturating_mul(round))
 }
 
 /// By tile and pixel, the standard deviation of a sample as the neighbours have it.
@@ -144,26 +171,57 @@ mod tests {
     fn noise_gets_the_samples_and_the_budget_is_kept() {
         let film = film();
         let mut plan = Plan::new(&film);
-        plan.aim(&film, None, 16);
-        assert!(plan.advance(16) && plan.spp() == 16.0);
-        plan.aim(&film, film.errors().as_ref(), 32);
+        plan.aim(16);
+        assert!(plan.spp() == 16.0 && plan.goal(1, 7) == 16);
+        plan.learn(&film, film.errors().as_ref());
+        plan.aim(32);
         assert!((31.0..=32.0).contains(&plan.spp()), "{}", plan.spp());
         for (i, tile) in film.tiles().iter().enumerate() {
             for (pixel, (x, _)) in tile.pixels().enumerate() {
-                let samples = plan.samples(i, pixel, u32::MAX - 16);
-                assert!(samples.start == 16 && samples.end.is_multiple_of(8) && samples.end <= 64);
+                let goal = plan.goal(i, pixel);
+                assert!(goal.is_multiple_of(8) && (16..=64).contains(&goal));
                 if x < 18 {
-                    assert_eq!(samples.end, 16);
+                    assert_eq!(goal, 16);
                 } else if x >= 22 {
-                    assert!(samples.end >= 40, "{samples:?}");
+                    assert!(goal >= 40, "{goal}");
                 }
             }
         }
-        let mut waves = 1;
-        while !plan.advance(16) {
-            waves += 1;
+    }
+
+    #[test]
+    fn fewer_samples_are_on_the_way_to_more() {
+        let film = film();
+        let mut plan = Plan::new(&film);
+        plan.learn(&film, film.errors().as_ref());
+        let mut goals = |spp| {
+            plan.aim(spp);
+            (0..film.tiles().len()).flat_map(|i| plan.tiles[i].goal.clone()).collect::<Vec<u32>>()
+        };
+        let mut before = goals(17);
+        for spp in 18..48 {
+            let after = goals(spp);
+            assert!(before.iter().zip(&after).all(|(before, after)| before <= after), "{spp}");
+            before = after;
         }
-        assert!((2..=3).contains(&waves));
+    }
+
+    #[test]
+    fn what_goals_follow_from_comes_back() {
+        let film = film();
+        for learns in [false, true] {
+            let mut plan = Plan::new(&film);
+            if learns {
+                plan.learn(&film, film.errors().as_ref());
+            }
+            let (mut bytes, mut other) = (Vec::new(), Plan::new(&film));
+            plan.save(&mut bytes).expect("written");
+            other.load(&mut &*bytes).expect("read");
+            plan.aim(40);
+            other.aim(40);
+            assert!(plan.tiles.iter().zip(&other.tiles).all(|(a, b)| a.goal == b.goal));
+            assert!(other.load(&mut &bytes[..bytes.len() - 1]).is_err());
+        }
     }
 
     #[test]
@@ -174,8 +232,8 @@ mod tests {
             tile.add(SampleId { x, y, index }, 1.0, &PixelSample::default());
         }
         let mut plan = Plan::new(&film);
-        plan.aim(&film, film.errors().as_ref(), 24);
-        assert_eq!(plan.spp(), 24.0);
-        assert_eq!(plan.samples(0, 4, 16), 0..16);
+        plan.learn(&film, film.errors().as_ref());
+        plan.aim(24);
+        assert!(plan.spp() == 24.0 && plan.goal(0, 4) == 24);
     }
 }

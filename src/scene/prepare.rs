@@ -65,8 +65,8 @@ pub struct Prepared {
     pub whole: [u32; 2],
     /// Where in it the upper left pixel of that part is.
     pub corner: [i32; 2],
-    /// Time spent on the acceleration structure.
-    pub build_time: Duration,
+    /// Time spent on each part, by name.
+    pub times: Vec<(&'static str, Duration)>,
     /// What was replaced or left out.
     pub warnings: Warnings,
 }
@@ -101,6 +101,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let passes = if catchers { passes.with_catchers() } else { passes };
     warn_of_passes_left_out(&desc, settings, &passes, &mut warnings);
     let effects = Effects::of(&desc, &camera_desc, settings, &passes);
+    let start = Instant::now();
     let Materials { list: materials, textures, names, domes, lamps, background } =
         materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
     let textures = Arc::new(textures);
@@ -108,6 +109,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         let surroundings = Surroundings { program, textures: textures.clone(), camera, origin };
         BackgroundAovs { surroundings, outputs }
     });
+    let mut times = vec![("materials", start.elapsed())];
     let start = Instant::now();
     let links = Links::of(&desc, &mut warnings);
     let terminator = TerminatorDesc {
@@ -115,7 +117,8 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         shading: settings.shadow_terminator_shading_offset,
     };
     let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, terminator, cache, &mut warnings);
-    let build_time = start.elapsed();
+    times.push(("geometry", start.elapsed()));
+    let start = Instant::now();
     let vectors = passes.needs(Quantity::Vector) && !tell_of_no_vectors(&desc, &camera_desc, shutter, &mut warnings);
     let vectors = vectors.then(|| vectors::prepare(&desc, &camera_desc, whole, origin, &geometry));
     let asked = Arc::new(graphs::asked(&desc, &geometry, &materials, names));
@@ -145,6 +148,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     };
     let of_groups = passes.needs_shadow_of_groups();
     let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
+    times.push(("lights", start.elapsed()));
     let scene = Scene {
         camera,
         camera_motion,
@@ -178,7 +182,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         background_aovs,
     };
     let corner = desc.render.part(whole).map_or([0; 2], |(corner, _)| corner);
-    Ok(Prepared { scene, camera: camera_desc.name, whole, corner, build_time, warnings })
+    Ok(Prepared { scene, camera: camera_desc.name, whole, corner, times, warnings })
 }
 
 impl Scene {
