@@ -1,5 +1,6 @@
 //! From a description to a picture that tells of its making: what the command line and Python share.
 
+pub mod denoise;
 pub mod resume;
 
 pub use resume::identity;

@@ -34,7 +34,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("integrator", &["bsdf", "bvh", "film", "light", "math", "sampling", "scene", "settings"]),
     ("render", &["error", "film", "integrator", "sampling", "scene", "settings"]),
     ("converge", &["compare", "denoise", "error", "film", "render", "sampling", "scene", "settings"]),
-    ("job", &["desc", "error", "film", "output", "render", "scene", "settings"]),
+    ("job", &["denoise", "desc", "error", "film", "output", "render", "scene", "settings"]),
 ];
 
 fn source() -> PathBuf {

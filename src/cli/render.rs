@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use penumbra::denoise::Denoiser;
 use penumbra::desc::{ProductDesc, SceneDesc};
 use penumbra::error::{Place, Warnings};
 use penumbra::film::{Quantity, SampleId};
@@ -23,45 +24,49 @@ use super::{Outcome, costs, environment, given, resume, say, scene};
 
 pub fn command() -> Command {
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
-    let command = Command::new("render")
-        .about("Render a scene to a multi-layer EXR")
-        .args(scene::args())
-        .arg(
-            path("output")
-                .short('o')
-                .value_name("OUT.exr")
-                .help("The EXR file to write; needed unless a USD stage names one"),
-        )
-        .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
-        .args(given::view_args())
-        .arg(
-            Arg::new("frames")
-                .long("frames")
-                .value_name("A-B[xSTEP]")
-                .value_parser(parse_frames)
-                .allow_hyphen_values(true)
-                .conflicts_with("frame")
-                .help("Render several frames; #### in file names, or the end of the stem, becomes the number"),
-        )
-        .args(environment::args())
-        .arg(
-            Arg::new("progress")
-                .long("progress")
-                .value_name("KIND")
-                .value_parser(["bar", "json", "none"])
-                .default_value("bar")
-                .help("How progress is told on stderr; the bar only on a terminal"),
-        )
-        .args(resume::args())
-        .arg(costs::arg())
-        .arg(Arg::new("strict").long("strict").action(ArgAction::SetTrue).help("Take warnings for errors"))
-        .arg(
-            Arg::new("debug-sample")
-                .long("debug-sample")
-                .value_name("X,Y,I")
-                .value_parser(parse_sample)
-                .help("Trace sample I of pixel (X, Y) alone and print what it gave; writes nothing"),
-        );
+    let command =
+        Command::new("render")
+            .about("Render a scene to a multi-layer EXR")
+            .args(scene::args())
+            .arg(
+                path("output")
+                    .short('o')
+                    .value_name("OUT.exr")
+                    .help("The EXR file to write; needed unless a USD stage names one"),
+            )
+            .arg(path("preview").value_name("OUT.png").help("Also write Combined as an sRGB PNG"))
+            .args(given::view_args())
+            .arg(
+                Arg::new("frames")
+                    .long("frames")
+                    .value_name("A-B[xSTEP]")
+                    .value_parser(parse_frames)
+                    .allow_hyphen_values(true)
+                    .conflicts_with("frame")
+                    .help("Render several frames; #### in file names, or the end of the stem, becomes the number"),
+            )
+            .args(environment::args())
+            .arg(
+                Arg::new("progress")
+                    .long("progress")
+                    .value_name("KIND")
+                    .value_parser(["bar", "json", "none"])
+                    .default_value("bar")
+                    .help("How progress is told on stderr; the bar only on a terminal"),
+            )
+            .args(resume::args())
+            .arg(Arg::new("denoise").long("denoise").action(ArgAction::SetTrue).conflicts_with("debug-sample").help(
+                "Also write the layer Denoised: Combined through Intel Open Image Denoise, which must be installed",
+            ))
+            .arg(costs::arg())
+            .arg(Arg::new("strict").long("strict").action(ArgAction::SetTrue).help("Take warnings for errors"))
+            .arg(
+                Arg::new("debug-sample")
+                    .long("debug-sample")
+                    .value_name("X,Y,I")
+                    .value_parser(parse_sample)
+                    .help("Trace sample I of pixel (X, Y) alone and print what it gave; writes nothing"),
+            );
     command.args(given::setting_args())
 }
 
@@ -80,6 +85,10 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
         Some(frames) => frames.iter().map(Some).collect(),
         None => vec![args.get_one::<f64>("frame").copied()],
     };
+    if args.get_flag("denoise") {
+        // What is missing is said before hours of work.
+        Denoiser::open().map_err(|what| anyhow!("--denoise: {what}"))?;
+    }
     catch_interrupts();
     let mut told = Warnings::new();
     for frame in frames {
@@ -162,10 +171,14 @@ impl Job<'_> {
         let args = self.args;
         let typed = args.get_one::<String>("camera").cloned();
         let view = job::view(typed, args.get_one("size").copied(), &desc, &mut warnings);
-        let settings = &match args.value_source("passes") {
+        let mut settings = match args.value_source("passes") {
             Some(ValueSource::CommandLine) => settings.clone(),
             _ => job::with_own_passes(settings, &desc, &mut warnings),
         };
+        if args.get_flag("denoise") {
+            settings = job::denoise::with_passes(&settings).map_err(|what| anyhow!("--denoise: {what}"))?;
+        }
+        let settings = &settings;
         let mut outs = self.outs();
         let mut begun = None;
         if let (Some(out), false) = (outs.next(), args.contains_id("debug-sample")) {
@@ -240,12 +253,22 @@ impl Job<'_> {
         metadata.times = job::times(self.import, prepared, rendered);
         let of_costs = costs.iter().flat_map(|costs| &costs.list);
         metadata.costs = of_costs.map(|cost| (cost.name.clone(), [cost.share, cost.error])).collect();
-        let picture = film.develop();
+        let mut picture = film.develop();
+        if args.get_flag("denoise") {
+            let done = Denoiser::open().and_then(|it| job::denoise::add(&it, &mut picture, settings.threads));
+            if let Err(what) = done {
+                say::err(format!("warning: --denoise: {what}; the rest of the picture is written"));
+            }
+        }
         let is_part = prepared.whole != scene.size || prepared.corner != [0; 2];
         let window = is_part.then_some(exr::Window { corner: prepared.corner, whole: prepared.whole });
         let pixel_aspect = self.shot.framing.pixel_aspect as f32;
         let options = exr::Options { half: settings.half, window, pixel_aspect, ..exr::Options::default() };
-        let part = |product: &ProductDesc| picture.part(&scene.passes.layers_of(&product.passes));
+        let part = |product: &ProductDesc| {
+            let mut names = scene.passes.layers_of(&product.passes);
+            names.insert(job::denoise::LAYER.to_owned());
+            picture.part(&names)
+        };
         let pictures = &self.shot.pictures;
         let saved = match pictures.first() {
             None => save(out, &picture, &metadata, &options)?,

@@ -84,3 +84,32 @@ def test_what_cannot_be_measured_is_said(tmp_path):
     assert "--samplers magic: must be one of" in converge("--samplers", "magic", code=1).stderr
     assert "samples grow up to --spp" in converge("--error", "0.01", code=1).stderr
     assert "nowhere.exr" in converge("--reference", tmp_path / "nowhere.exr", code=1).stderr
+
+
+@pytest.mark.skipif(oidn() is None, reason="Blender's package brings no Open Image Denoise here")
+def test_denoised_is_a_layer_beside_what_was_rendered(tmp_path):
+    import numpy as np
+    import OpenImageIO as oiio
+
+    out, library = tmp_path / "out.exr", oidn()
+    command = [PENUMBRA, "render", SCENE, "-o", out, "--environment", ROOT / "scenes" / "sky.hdr", "--size", "64x43", "--spp", "16",
+               "--progress", "none", "--denoise"]
+    command = [str(part) for part in command]
+    environment = {**os.environ, "PENUMBRA_OIDN": str(library), "LD_LIBRARY_PATH": str(library.parent)}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert done.returncode == 0, done.stderr
+    file, layers, part = oiio.ImageInput.open(str(out)), {}, 0
+    while file.seek_subimage(part, 0):
+        spec = file.spec()
+        layers[spec.getattribute("oiio:subimagename").partition(".")[2]] = file.read_image(part, 0, 0, spec.nchannels, "float")
+        part += 1
+    assert {"Combined", "Denoised", "Denoising Albedo", "Denoising Normal"} <= set(layers)
+    noisy, clean = layers["Combined"], layers["Denoised"]
+    # Neighbours differ less, and the picture is as bright.
+    roughness = lambda picture: np.abs(np.diff(picture[..., :3], axis=1)).mean()
+    assert roughness(clean) < 0.7 * roughness(noisy)
+    assert abs(clean[..., :3].mean() / noisy[..., :3].mean() - 1.0) < 0.05
+    assert np.array_equal(clean[..., 3], noisy[..., 3])
+    # Without the library nothing is rendered in vain.
+    gone = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PENUMBRA_OIDN": "/nowhere/libOpenImageDenoise.so"})
+    assert gone.returncode == 1 and "--denoise: Open Image Denoise 2 is not there (/nowhere" in gone.stderr
