@@ -255,14 +255,12 @@ mod tests {
 
     #[test]
     fn matrices_are_inverse() {
-        for (i, row) in TO_XYZ.iter().enumerate() {
-            for j in 0..3 {
-                let column = [FROM_XYZ[0][j], FROM_XYZ[1][j], FROM_XYZ[2][j]];
-                let expected = if i == j { 1.0 } else { 0.0 };
-                assert!((dot(*row, column) - expected).abs() < 1e-4, "{i} {j} {}", dot(*row, column));
-            }
-            assert!((row.iter().sum::<f32>() - 1.0).abs() < 1e-4, "white is 1");
+        for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]] {
+            let xyz = TO_XYZ.map(|row| dot(row, rgb));
+            let back = FROM_XYZ.map(|row| dot(row, xyz));
+            assert!(back.iter().zip(rgb).all(|(a, b)| (a - b).abs() < 1e-4), "{back:?}");
         }
+        assert!(TO_XYZ.iter().all(|row| (row.iter().sum::<f32>() - 1.0).abs() < 1e-4), "white is 1");
     }
 
     /// More exposure shows what is dark: a difference there counts although it is a thousandth of the light beside it.
