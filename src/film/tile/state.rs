@@ -90,3 +90,46 @@ impl Tile {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{CryptoSample, Film, PassSet, PixelSample};
+    use crate::math::Rgb;
+
+    /// Samples of every fifth pixel are not finite, and pixels have more ids than lie inline.
+    fn film(samples: std::ops::Range<u32>, mut film: Film) -> Film {
+        for tile in film.tiles_mut() {
+            for (x, y) in tile.pixels() {
+                for index in samples.clone() {
+                    let value =
+                        if (x + 3 * y) % 5 == 0 && index % 3 == 1 { f32::NAN } else { 0.1 * index as f32 + 0.37 };
+                    let crypto =
+                        CryptoSample { object: 1.0 + (index % 7) as f32, coverage: 1.0, ..CryptoSample::default() };
+                    let sample = PixelSample { combined: Rgb::new(value, 0.3, 0.7), crypto, ..PixelSample::default() };
+                    tile.add(SampleId { x, y, index }, 0.9, &sample);
+                }
+            }
+        }
+        film
+    }
+
+    #[test]
+    fn sums_come_back_and_go_on_as_they_were() {
+        let passes = PassSet::parse("combined,crypto_object,error,error_trust,sample_count").expect("known");
+        let new = || Film::new(19, 18, passes.clone());
+        let (whole, half) = (film(0..40, new()), film(0..21, new()));
+        let (mut bytes, mut other) = (Vec::new(), new());
+        half.save(&mut bytes).expect("written");
+        let mut rest = &*bytes;
+        other.load(&mut rest).expect("read");
+        assert!(rest.is_empty());
+        assert_eq!((other.develop(), other.non_finite()), (half.develop(), half.non_finite()));
+        // What was dropped was given, too.
+        assert_eq!(other.given(), (21, 21, 21 * 19 * 18));
+        assert!(other.samples() < 21 * 19 * 18);
+        let other = film(21..40, other);
+        assert_eq!((other.develop(), other.non_finite()), (whole.develop(), whole.non_finite()));
+        assert!(new().load(&mut &bytes[..bytes.len() - 1]).is_err());
+    }
+}
