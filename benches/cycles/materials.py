@@ -213,9 +213,9 @@ KNOWN = [
     "- An opaque surface of an index below 1: Cycles reflects all beyond the critical angle and adds the light from below, "
     "more than there is; Penumbra takes the reciprocal index.",
     "- Balls of rough glass under a lamp: Cycles' light samples give more than the rays that it draws find. A white ball of "
-    "roughness 1 under this page's lamp alone is 0.0644 ± 0.0004 by a random walk in f64; Cycles has 0.0815 by light "
-    "samples and 0.056 ± 0.002 by rays alone, Penumbra 0.0636 ± 0.0008. In a white world, where it is 1, Cycles has 0.973 and "
-    "Penumbra 0.998 (`benches/cycles/glass_ball.py`).",
+    "roughness 1 under this page's lamp alone is 0.0644 ± 0.0004 by a random walk in f64; Cycles has 0.080 by light samples "
+    "and 0.057 by rays alone, Penumbra 0.0628 and 0.0631. In a white world, where it is 1, Cycles has 0.975 and Penumbra "
+    "0.996 (`benches/cycles/glass_ball.py`).",
 ]
 """What the page says of what is in bold."""
 
