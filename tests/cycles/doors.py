@@ -16,8 +16,8 @@ PASSES = ("combined,depth,position,normal,uv,diffuse_direct,diffuse_indirect,dif
 
 def engines(stage, folder, wheel, size, samples, only, python=sys.executable):
     """Blender's part, in a process of its own."""
-    command = [python, HERE / "engines.py", stage, folder, "--wheel", wheel, "--size", f"{size[0]}x{size[1]}", "--samples", samples,
-               "--only", only]
+    command = [python, HERE / "engines.py", stage, folder, "--size", f"{size[0]}x{size[1]}", "--samples", samples, "--only", only]
+    command += ["--wheel", wheel] if wheel else []
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
 

@@ -1,6 +1,6 @@
 """One stage by both engines, in a process of its own: what Cycles and Penumbra make of it, and files for the other doors.
 
-    python engines.py STAGE FOLDER --wheel FILE [--size WxH] [--samples N] [--only cycles,penumbra,files]
+    python engines.py STAGE FOLDER [--wheel FILE] [--size WxH] [--samples N] [--only cycles,penumbra,files]
 
 writes cycles-1.exr, cycles-2.exr, blender-1.exr, blender-2.exr (of other seeds), scene.usdc and scene.glb.
 
@@ -51,8 +51,9 @@ def prepare(stage, size, samples):
     layer = scene.view_layers[0]
     for name in PASSES:
         setattr(layer, f"use_pass_{name}", True)
-    layer.penumbra.use_pass_shadow = layer.penumbra.use_pass_unshadowed = True
-    scene.penumbra.spp, scene.penumbra.max_bounces = samples, stage.bounces
+    if hasattr(scene, "penumbra"):
+        layer.penumbra.use_pass_shadow = layer.penumbra.use_pass_unshadowed = True
+        scene.penumbra.spp, scene.penumbra.max_bounces = samples, stage.bounces
     return scene
 
 
@@ -140,14 +141,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("stage", choices=stages.STAGES)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--wheel", required=True)
+    parser.add_argument("--wheel", help="not needed for Cycles alone")
     parser.add_argument("--size", default="64x48")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--only", default="cycles,penumbra,files")
     options = parser.parse_args()
     wanted = options.only.split(",")
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon.register(options.wheel)
+    if wanted != ["cycles"]:
+        addon.register(options.wheel)
     stage = stages.STAGES[options.stage]
     stage.build()
     for material in bpy.data.materials:

@@ -27,7 +27,7 @@ import report
 
 OUT = ROOT / "target" / "validation"
 REFERENCES = HERE / "references"
-REFERENCE_SIZE, REFERENCE_SAMPLES = (64, 48), 1024
+REFERENCE_SIZE, REFERENCE_SAMPLES = (64, 48), 512
 
 
 def arguments():
@@ -100,7 +100,7 @@ def main():
     facts = all_facts()
     names = options.stages.split(",") if options.stages else list(facts)
     wheel = options.wheel
-    if wheel is None and not options.again:
+    if wheel is None and not options.again and not options.references:
         from build import build_wheel
 
         wheel = build_wheel(OUT / "wheel", "release")
