@@ -83,6 +83,7 @@ fn metadata() -> Metadata {
             manifest(CryptoKind::Material, &["Material"]),
             manifest(CryptoKind::Asset, &["Cube", "Kugel ö"]),
         ],
+        ..Metadata::default()
     }
 }
 

@@ -51,7 +51,7 @@ def all_facts():
         "    bpy.ops.wm.read_factory_settings(use_empty=True)\n"
         "    it.build()\n"
         "    distance = bpy.context.scene.world.light_settings.distance\n"
-        "    passes = {door: {**stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
+        "    passes = {door: {**stages.OPEN, **stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
         "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance)\n"
         "print('FACTS' + json.dumps(facts))\n"
     )
@@ -74,7 +74,14 @@ def make_references(names, facts, wheel):
             exact = {part for part in found if any(word in part for word in ("Crypto", "Depth", "Index", "Position"))}
             engines.save(REFERENCES / name / f"cycles-{seed}.exr", found, half=set(found) - exact)
         print(name, flush=True)
-    (REFERENCES / "facts.json").write_text(json.dumps({"size": REFERENCE_SIZE, "samples": REFERENCE_SAMPLES, "stages": facts}, indent=1) + "\n")
+    tell_facts(facts)
+
+
+def tell_facts(facts):
+    """What the tests have to know, of the stages that have references."""
+    there = {name: it for name, it in facts.items() if (REFERENCES / name / "cycles-2.exr").exists()}
+    text = json.dumps({"size": REFERENCE_SIZE, "samples": REFERENCE_SAMPLES, "stages": there}, indent=1)
+    (REFERENCES / "facts.json").write_text(text + "\n")
 
 
 def judge(name, facts, options, wheel, among):

@@ -160,7 +160,8 @@ pub(super) fn name(place: &Place) -> Arc<str> {
     path.rsplit('/').next().unwrap_or_default().into()
 }
 
-/// The UV sets that are wanted, each laid out by `lay`, which is given none for a set that is absent.
+/// The UV sets that are wanted, each laid out by `lay`, which is given none for a set that is absent; no sets at all
+/// where none is there that anything looks up.
 pub(super) fn uv_sets<T>(
     mut uvs: Vec<(Arc<str>, Channel<2>)>,
     wants: &Wants,
@@ -169,6 +170,7 @@ pub(super) fn uv_sets<T>(
     lay: impl Fn(Option<Channel<2>>) -> T,
 ) -> Vec<T> {
     let mut sets = Vec::with_capacity(wants.uv_sets.len());
+    let mut any = false;
     for name in &wants.uv_sets {
         let found = uvs.iter().position(|(known, _)| known == name).map(|i| uvs.swap_remove(i).1);
         let spare = name.is_empty() || (wants.spare_first_set && sets.is_empty());
@@ -176,9 +178,10 @@ pub(super) fn uv_sets<T>(
             let what = format!("its material looks textures up by primvar {name}, which is absent; (0, 0) is used");
             warnings.push(place, what);
         }
+        any |= found.is_some() || !spare;
         sets.push(lay(found));
     }
-    sets
+    if any { sets } else { Vec::new() }
 }
 
 /// Colour of shapes that are to show theirs and have none (UsdImaging's fallback).
