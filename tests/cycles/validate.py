@@ -2,7 +2,7 @@
 
     tests/run                                               # once: the Python environment with bpy 5.0.1
     cargo build --release --ignore-rust-version
-    target/test-venv/bin/python tests/cycles/validate.py    # builds the add-on; see docs/validation for how long it takes
+    target/test-venv/bin/python tests/cycles/validate.py    # builds the add-on
 
 writes target/validation/index.html, a list of pages in which A is Cycles and B Penumbra, and docs/validation/cycles.md.
 `--stages A,B` takes some and leaves docs/ alone, `--size`, `--samples` say how well, `--wheel FILE` takes a wheel that is
