@@ -81,7 +81,7 @@ fn each<T: Sync>(items: &[T], add: impl Fn(&mut Digest, &T) + Sync) -> Vec<u64> 
 /// Takes in what `Debug` says of `value`; the sign has places say nothing.
 fn say<T: Debug + ?Sized>(digest: &mut Digest, value: &T) {
     // A digest takes everything.
-    let _ = write!(digest, "{value:-?}\n");
+    let _ = writeln!(digest, "{value:-?}");
 }
 
 /// Takes in numbers as they lie in memory, after how many there are.

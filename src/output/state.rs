@@ -184,7 +184,7 @@ mod tests {
 
     fn saved(path: &Path) -> (Head, Vec<u8>) {
         let head = vec![("scene".to_owned(), "abc".to_owned())];
-        let body: Vec<u8> = (0..10_000_u32).map(|i| (i * i >> 3) as u8).collect();
+        let body: Vec<u8> = (0..10_000_u32).map(|i| ((i * i) >> 3) as u8).collect();
         write(path, &head, |out| out.write_all(&body)).expect("written");
         (head, body)
     }

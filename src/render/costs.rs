@@ -47,11 +47,14 @@ pub struct Costs {
     pub list: Vec<Cost>,
 }
 
+/// Whether something is there.
+type Is = fn(&Effects) -> bool;
+
 /// Turns something of a scene off.
 type Off = fn(&mut Effects);
 
 /// Passes and effects that can be left out alone, with whether they are there.
-const THINGS: &[(&str, fn(&Effects) -> bool, Off)] = &[
+const THINGS: &[(&str, Is, Off)] = &[
     ("pass ao", |e| e.ao, |e| e.ao = false),
     ("pass shadow", |e| e.shadow, |e| (e.shadow, e.irradiance) = (false, false)),
     ("pass shadow of groups", |e| e.group_shadows, |e| e.group_shadows = false),
@@ -113,7 +116,7 @@ impl Probe {
         let all = u64::from(width) * u64::from(height);
         // Steps of the golden ratio go over the picture evenly, however many there are.
         let pixel = |i: u64| {
-            let at = (i.wrapping_mul(0x9E37_79B9_7F4A_7C15) as u128 * u128::from(all) >> 64) as u64;
+            let at = ((u128::from(i.wrapping_mul(0x9E37_79B9_7F4A_7C15)) * u128::from(all)) >> 64) as u64;
             ((at % u64::from(width)) as u32, (at / u64::from(width)) as u32)
         };
         let pixels = |count: usize| (0..count as u64).map(pixel).collect();
