@@ -70,23 +70,28 @@ def towards(obj, direction):
     return z / np.linalg.norm(z)
 
 
-def render():
-    """Channels of the picture by their full names, rows from top to bottom."""
+def write(path):
+    """Renders to a file of one part for each pass, and prints nothing."""
     image = bpy.context.scene.render.image_settings
     if hasattr(image, "media_type"):
         image.media_type = "MULTI_LAYER_IMAGE"
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
+    bpy.context.scene.render.filepath = str(path)
+    saved, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 1)
+    try:
+        bpy.ops.render.render(write_still=True)
+    finally:
+        os.dup2(saved, 1)
+        os.close(saved)
+        os.close(null)
+
+
+def render():
+    """Channels of the picture by their full names, rows from top to bottom."""
     with tempfile.TemporaryDirectory() as folder:
         path = str(Path(folder) / "picture.exr")
-        bpy.context.scene.render.filepath = path
-        saved, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-        os.dup2(null, 1)
-        try:
-            bpy.ops.render.render(write_still=True)
-        finally:
-            os.dup2(saved, 1)
-            os.close(saved)
-            os.close(null)
+        write(path)
         file = oiio.ImageInput.open(path)
         channels, part = {}, 0
         while file.seek_subimage(part, 0):

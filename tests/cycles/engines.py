@@ -11,7 +11,6 @@ Direct Unshadowed, which are added to its file.
 """
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
@@ -24,6 +23,7 @@ import OpenImageIO as oiio
 
 import addon
 import stages
+from lab import write
 
 PASSES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "diffuse_direct", "diffuse_indirect",
           "diffuse_color", "glossy_direct", "glossy_indirect", "glossy_color", "transmission_direct", "transmission_indirect",
@@ -55,23 +55,6 @@ def prepare(stage, size, samples):
         layer.penumbra.use_pass_shadow = layer.penumbra.use_pass_unshadowed = True
         scene.penumbra.spp, scene.penumbra.max_bounces = samples, stage.bounces
     return scene
-
-
-def write(path):
-    """Renders to a file of one part for each pass."""
-    scene = bpy.context.scene
-    image = scene.render.image_settings
-    image.media_type = "MULTI_LAYER_IMAGE"
-    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
-    scene.render.filepath = str(path)
-    saved, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null, 1)
-    try:
-        bpy.ops.render.render(write_still=True)
-    finally:
-        os.dup2(saved, 1)
-        os.close(saved)
-        os.close(null)
 
 
 def parts(path):

@@ -15,17 +15,16 @@ SCENE = ROOT / "scenes" / "interior.glb"
 BASE = ["--environment", ROOT / "scenes" / "sky.hdr", "--size", "48x32", "--spp", "32", "--max-bounces", "4"]
 
 
-def oidn():
-    """The library inside Blender's Python package, which is the only one that is surely there."""
+def with_denoiser():
+    """An environment in which Open Image Denoise is found: Blender's Python package brings it."""
     folder = Path(importlib.util.find_spec("bpy").origin).resolve().parent / "lib"
-    return next(iter(sorted(folder.glob("libOpenImageDenoise.so.2"))), None)
+    library = next(folder / name for name in ("libOpenImageDenoise.so.2", "libOpenImageDenoise.dylib") if (folder / name).exists())
+    return {**os.environ, "PENUMBRA_OIDN": str(library), "LD_LIBRARY_PATH": str(folder)}
 
 
 def converge(*arguments, code=0):
-    library = oidn()
-    environment = {**os.environ, **({"PENUMBRA_OIDN": str(library), "LD_LIBRARY_PATH": str(library.parent)} if library else {})}
     command = [str(part) for part in (PENUMBRA, "converge", SCENE, *BASE, *arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, env=with_denoiser())
     assert done.returncode == code, done.stderr
     return done
 
@@ -33,9 +32,7 @@ def converge(*arguments, code=0):
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
     folder = tmp_path_factory.mktemp("converge")
-    ways = ["max-bounces=0", "sampler=independent", "motion-blur=off", "clamp-indirect=10", "without pass ao"]
-    if oidn():
-        ways.append("denoised")
+    ways = ["max-bounces=0", "sampler=independent", "motion-blur=off", "clamp-indirect=10", "without pass ao", "denoised"]
     done = converge("--passes", "combined,ao", "--samplers", "independent", "--only", ",".join(ways), "--seeds", "3", "--json", "--html", folder)
     return json.loads(done.stdout), folder
 
@@ -59,7 +56,6 @@ def test_noise_falls_and_bias_is_told(measured):
     assert report["cheapest"][0]["seconds"] > 0.0
 
 
-@pytest.mark.skipif(oidn() is None, reason="Blender's package brings no Open Image Denoise here")
 def test_denoising_is_measured_with_its_bias(measured):
     ways = {way["name"]: way for way in measured[0]["configurations"]}
     clean, base = ways["denoised"]["points"], ways["base"]["points"]
@@ -86,17 +82,15 @@ def test_what_cannot_be_measured_is_said(tmp_path):
     assert "nowhere.exr" in converge("--reference", tmp_path / "nowhere.exr", code=1).stderr
 
 
-@pytest.mark.skipif(oidn() is None, reason="Blender's package brings no Open Image Denoise here")
 def test_denoised_is_a_layer_beside_what_was_rendered(tmp_path):
     import numpy as np
     import OpenImageIO as oiio
 
-    out, library = tmp_path / "out.exr", oidn()
+    out = tmp_path / "out.exr"
     command = [PENUMBRA, "render", SCENE, "-o", out, "--environment", ROOT / "scenes" / "sky.hdr", "--size", "64x43", "--spp", "16",
                "--progress", "none", "--denoise"]
     command = [str(part) for part in command]
-    environment = {**os.environ, "PENUMBRA_OIDN": str(library), "LD_LIBRARY_PATH": str(library.parent)}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, env=with_denoiser())
     assert done.returncode == 0, done.stderr
     file, layers, part = oiio.ImageInput.open(str(out)), {}, 0
     while file.seek_subimage(part, 0):
