@@ -45,8 +45,6 @@ pub mod job;
 pub mod light;
 pub mod math;
 pub mod output;
-#[cfg(feature = "python")]
-mod python;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -9,10 +9,10 @@ use pyo3::types::PyDict;
 
 use super::observer::{Mailbox, Received};
 use super::picture::Picture;
-use crate::error::Result;
-use crate::film;
-use crate::output::Metadata;
-use crate::render::Progress;
+use penumbra::error::Result;
+use penumbra::film;
+use penumbra::output::Metadata;
+use penumbra::render::Progress;
 
 /// How often the watcher is asked whether to go on, at least.
 const PULSE: Duration = Duration::from_millis(50);

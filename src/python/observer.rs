@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::film::{Film, Picture};
-use crate::render::{Observer, Progress};
+use penumbra::film::{Film, Picture};
+use penumbra::render::{Observer, Progress};
 
 /// What the render's threads leave for the waiting one.
 #[derive(Default)]

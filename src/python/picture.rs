@@ -7,8 +7,8 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use super::exception;
-use crate::film;
-use crate::output::{Metadata, exr, png};
+use penumbra::film;
+use penumbra::output::{Metadata, exr, png};
 
 /// A picture: named layers of float32, rows from the top.
 #[pyclass(frozen)]

@@ -11,15 +11,15 @@ use super::exception;
 use super::job::{Watch, run};
 use super::picture::Picture;
 use super::scene::Scene;
-use crate::desc::SceneDesc;
-use crate::error::{Place, Result, Warnings};
-use crate::film::Quantity;
-use crate::import::{self, ImportOptions};
-use crate::job;
-use crate::job::resume::{self, Saver};
-use crate::render::{Start, render_from};
-use crate::scene::prepare;
-use crate::settings::{SETTINGS, Settings};
+use penumbra::desc::SceneDesc;
+use penumbra::error::{Place, Result, Warnings};
+use penumbra::film::Quantity;
+use penumbra::import::{self, ImportOptions};
+use penumbra::job;
+use penumbra::job::resume::{self, Saver};
+use penumbra::render::{Start, render_from};
+use penumbra::scene::prepare;
+use penumbra::settings::{SETTINGS, Settings};
 
 /// Where a scene comes from.
 enum Source<'py> {

@@ -7,9 +7,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::exception;
-use crate::desc::SceneDesc;
-use crate::error::{Result, Warnings};
-use crate::import::blender::{
+use penumbra::desc::SceneDesc;
+use penumbra::error::{Result, Warnings};
+use penumbra::import::blender::{
     BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints, pointiness, random_per_island,
 };
 

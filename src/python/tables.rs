@@ -3,14 +3,14 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::film::PASSES;
-use crate::settings::{Kind, SETTINGS};
+use penumbra::film::PASSES;
+use penumbra::settings::{Kind, SETTINGS};
 
 /// Every pass, in the order of a file: dicts of name, layer, channels and help. Names that end in
 /// "<group>" stand for one pass per light group, "aov:<name>" for the scene's AOVs.
 #[pyfunction]
 pub fn passes(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |pass: &crate::film::Pass| {
+    let row = |pass: &penumbra::film::Pass| {
         let row = PyDict::new(py);
         row.set_item("name", pass.name)?;
         row.set_item("layer", pass.layer)?;
@@ -25,7 +25,7 @@ pub fn passes(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// help, and min and max or choices where the kind has them.
 #[pyfunction]
 pub fn settings(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |def: &crate::settings::SettingDef| {
+    let row = |def: &penumbra::settings::SettingDef| {
         let row = PyDict::new(py);
         row.set_item("name", def.name)?;
         row.set_item("default", def.default)?;

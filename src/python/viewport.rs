@@ -11,14 +11,14 @@ use pyo3::types::PyDict;
 use super::exception;
 use super::render::settings_of;
 use super::scene::Scene;
-use crate::desc::{CameraDesc, RenderDesc};
-use crate::error::{Error, Result, Warnings};
-use crate::film::Film;
-use crate::import::blender::ViewData;
-use crate::job;
-use crate::render::{Observer, render};
-use crate::scene::{self, Cache, View, prepare_with};
-use crate::settings::Settings;
+use penumbra::desc::{CameraDesc, RenderDesc};
+use penumbra::error::{Error, Result, Warnings};
+use penumbra::film::Film;
+use penumbra::import::blender::ViewData;
+use penumbra::job;
+use penumbra::render::{Observer, render};
+use penumbra::scene::{self, Cache, View, prepare_with};
+use penumbra::settings::Settings;
 
 /// Sizes of the first pictures, as parts of the whole: something is to be seen at once.
 const COARSE: [u32; 3] = [8, 4, 2];

@@ -37,8 +37,8 @@ mod _engine {
 }
 
 /// The exception for `error`: the class that Python has for it, with the message and its causes.
-fn exception(error: &crate::error::Error) -> PyErr {
-    use crate::error::Error;
+fn exception(error: &penumbra::error::Error) -> PyErr {
+    use penumbra::error::Error;
     use pyo3::exceptions::{PyKeyboardInterrupt, PyNotImplementedError, PyOSError, PyValueError};
     let mut message = error.to_string();
     let mut cause = std::error::Error::source(error);
