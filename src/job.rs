@@ -110,6 +110,7 @@ pub fn metadata(
             .filter(|def| def.name != "spp" || settings.spp != Settings::NO_LIMIT)
             .map(|def| (def.name.to_owned(), def.get(settings)))
             .collect(),
+        effects: prepared.scene.effects.names(),
         identity,
         ended_by: resume::name(rendered.ended).to_owned(),
         comments: rendered.interrupted.then(|| format!("interrupted at {spp:.1} samples per pixel")),

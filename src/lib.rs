@@ -45,6 +45,7 @@ pub mod job;
 pub mod light;
 pub mod math;
 pub mod output;
+pub mod plan;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -33,6 +33,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("integrator", &["bsdf", "bvh", "film", "light", "math", "sampling", "scene", "settings"]),
     ("render", &["error", "film", "integrator", "sampling", "scene", "settings"]),
+    ("plan", &["desc", "film", "render", "scene", "settings"]),
     ("converge", &["compare", "denoise", "error", "film", "render", "sampling", "scene", "settings"]),
     ("job", &["denoise", "desc", "error", "film", "output", "render", "scene", "settings"]),
 ];

@@ -103,7 +103,7 @@ def settings(scene, view_layer):
         if hasattr(cycles, theirs):
             result[name] = getattr(cycles, theirs)
     if bpy.app.version < (5, 0) and "transparent_bounces" in result:
-        # Measured: Cycles 4 passes one more than it says.
+        # Measured: paths of Cycles 4 pass one more than it says, its shadow rays do not (export/camera.py).
         result["transparent_bounces"] += 1
     result.update(_mist(scene.world))
     world = scene.world

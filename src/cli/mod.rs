@@ -7,6 +7,7 @@ mod environment;
 mod files;
 mod given;
 mod info;
+mod plan;
 mod progress;
 mod render;
 mod resume;
@@ -34,6 +35,7 @@ pub fn run() -> ExitCode {
     let outcome = match matches.subcommand() {
         Some(("render", args)) => render::run(args),
         Some(("info", args)) => info::run(args),
+        Some(("plan", args)) => plan::run(args),
         Some(("compare", args)) => compare::run(args),
         Some(("converge", args)) => converge::run(args),
         _ => unreachable!("clap requires one of the commands"),
@@ -59,6 +61,7 @@ fn command() -> Command {
         .arg_required_else_help(true)
         .subcommand(render::command())
         .subcommand(info::command())
+        .subcommand(plan::command())
         .subcommand(compare::command())
         .subcommand(converge::command())
 }

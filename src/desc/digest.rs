@@ -38,6 +38,7 @@ impl SceneDesc {
             crop,
             film_transparent,
             transparent_glass,
+            fewer_in_shadow,
             pass_alpha_threshold,
             passes,
             aovs,
@@ -63,7 +64,8 @@ impl SceneDesc {
         say(&mut all, &(cameras, dome_shaders, lamp_shaders, background_aovs, lights_left_out));
         // Which of several pictures has what, but for their names.
         products.iter().for_each(|product| say(&mut all, &(&product.passes, &product.framing)));
-        say(&mut all, &(framing, crop, film_transparent, transparent_glass, pass_alpha_threshold, passes, aovs));
+        say(&mut all, &(framing, crop, film_transparent, transparent_glass, fewer_in_shadow));
+        say(&mut all, &(pass_alpha_threshold, passes, aovs));
         all.finish()
     }
 }

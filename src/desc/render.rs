@@ -20,6 +20,8 @@ pub struct RenderDesc {
     pub film_transparent: Option<bool>,
     /// Roughness up to which a transparent film is so seen through glass, too; `None` for no glass.
     pub transparent_glass: Option<f64>,
+    /// How many surfaces fewer than a path a shadow ray passes unscattered: Cycles before 5.0 lets it pass one fewer.
+    pub fewer_in_shadow: u32,
     /// Opacity from which on a surface is what normal, UV, depth, position and index passes show; thinner ones
     /// are looked through. 0 for the first surface, whatever it is.
     pub pass_alpha_threshold: f64,
@@ -56,6 +58,7 @@ impl Default for RenderDesc {
             crop: None,
             film_transparent: None,
             transparent_glass: None,
+            fewer_in_shadow: 0,
             pass_alpha_threshold: 0.5,
             passes: Vec::new(),
             aovs: Vec::new(),

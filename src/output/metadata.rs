@@ -38,6 +38,8 @@ pub struct Metadata {
     pub owner: Option<String>,
     /// Where the time went: seconds by what took them.
     pub times: Vec<(String, f64)>,
+    /// Effects that were simulated, by name: see [`Effects`](crate::scene::Effects).
+    pub effects: Vec<&'static str>,
     /// Shares of a sample's time by what they went into, with their standard errors, where that was measured.
     pub costs: Vec<(String, [f64; 2])>,
     /// What made the picture, as far as it changes a sample, as names and values: see
@@ -89,6 +91,9 @@ impl Metadata {
         }
         for (name, value) in &self.settings {
             add(&format!("penumbra/settings/{name}"), value.clone());
+        }
+        if !self.effects.is_empty() {
+            add("penumbra/effects", self.effects.join("; "));
         }
         for (name, seconds) in &self.times {
             add(&format!("penumbra/time/{name}"), format!("{seconds:.3}"));

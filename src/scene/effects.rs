@@ -5,7 +5,10 @@
 
 use super::shutter::Shutter;
 use crate::desc::graph::{Leaf, Op};
-use crate::desc::{AlphaMode, CameraDesc, Channel, LightLinks, MaterialDesc, ScalarInput, SceneDesc, ShadowDesc};
+use crate::desc::{
+    AlphaMode, CameraDesc, Channel, InstanceDesc, LightDesc, LightLinks, MaterialDesc, ScalarInput, SceneDesc,
+    ShadowDesc, Visibility,
+};
 use crate::film::{PassSet, Quantity};
 use crate::settings::{EffectsMode, Settings};
 
@@ -71,17 +74,15 @@ impl Effects {
         if settings.effects == EffectsMode::All {
             return Self::forced(passes);
         }
-        let mut used = vec![false; scene.materials.len()];
-        for &material in scene.instances.iter().flat_map(|i| i.materials.iter().flatten()) {
-            used[material as usize] = true;
-        }
+        let used = Self::materials_met(scene);
         let any = |test: &dyn Fn(&MaterialDesc) -> bool| {
             scene.materials.iter().zip(&used).any(|(material, used)| *used && test(material))
         };
-        let lamps = scene.lights.iter().any(|light| light.kind.is_shape());
+        let lamps = scene.lights.iter().any(|light| light.kind.is_shape() && shines(light));
         let (emissive, unlit) = (any(&emits), any(&|m| m.unlit));
         // A scene without lights gets a dome.
-        let in_background = scene.lights.iter().any(|light| light.kind.is_in_background()) || scene.lights.is_empty();
+        let in_background = scene.lights.iter().all(|light| light.kind.is_portal())
+            || scene.lights.iter().any(|light| light.kind.is_in_background() && shines(light));
         Self {
             motion_blur: Shutter::of(camera, settings).is_some_and(|shutter| shutter.shows_motion(scene, camera)),
             indirect: passes.needs_indirect() && settings.max_bounces > 0,
@@ -94,11 +95,54 @@ impl Effects {
             emissive: emissive || unlit,
             shaped_emission: emissive && scene.instances.iter().any(|instance| instance.shaped.is_some()),
             found_by_rays: lamps || emissive || in_background || unlit,
-            own_shadows: scene.lights.iter().any(|light| has_own_shadow(&light.links))
+            own_shadows: scene.lights.iter().any(|light| shines(light) && has_own_shadow(&light.links))
                 || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
             occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
             ..Self::forced(passes)
         }
+    }
+
+    /// Names of those that are there.
+    pub fn names(&self) -> Vec<&'static str> {
+        let all = [
+            ("motion blur", self.motion_blur),
+            ("light", self.light),
+            ("indirect light", self.indirect),
+            ("cut-outs", self.cutouts),
+            ("holdouts", self.holdouts),
+            ("shadow catchers", self.catchers),
+            ("light path", self.light_path),
+            ("absorption", self.absorption),
+            ("occlusion maps", self.occlusion_maps),
+            ("ao", self.ao),
+            ("shadow", self.shadow),
+            ("shadow of groups", self.group_shadows),
+            ("irradiance", self.irradiance),
+            ("lamps", self.lamps),
+            ("emissive objects", self.emissive),
+            ("shaped emission", self.shaped_emission),
+            ("light found by rays", self.found_by_rays),
+            ("own shadows", self.own_shadows),
+            ("colors", self.color),
+            ("normal, uv, vector", self.geometry),
+            ("denoising", self.denoising),
+            ("mist", self.mist),
+            ("aovs", self.aovs),
+            ("first hit", self.first_hit),
+            ("cryptomatte", self.cryptomatte),
+        ];
+        all.iter().filter(|(_, on)| *on).map(|(name, _)| *name).collect()
+    }
+
+    /// For each material of `scene`, whether rays may meet it or be lit by it.
+    pub fn materials_met(scene: &SceneDesc) -> Vec<bool> {
+        let mut met = vec![false; scene.materials.len()];
+        for instance in scene.instances.iter().filter(|instance| is_met(scene, instance)) {
+            for &material in instance.materials.iter().flatten() {
+                met[material as usize] = true;
+            }
+        }
+        met
     }
 
     /// Everything on that the passes can show.
@@ -131,6 +175,18 @@ impl Effects {
             cryptomatte: passes.needs_cryptomatte(),
         }
     }
+}
+
+/// True for an object that some ray may meet, that catches shadows or gives light.
+pub(super) fn is_met(scene: &SceneDesc, instance: &InstanceDesc) -> bool {
+    let Visibility { camera, diffuse, glossy, transmission, shadow } = instance.visibility;
+    let mut materials = instance.materials.iter().flatten().map(|&m| &scene.materials[m as usize]);
+    camera || diffuse || glossy || transmission || shadow || instance.catcher || materials.any(emits)
+}
+
+/// True for a light that gives any.
+fn shines(light: &LightDesc) -> bool {
+    light.kind.color().iter().any(|&c| c != 0.0)
 }
 
 fn has_own_shadow(links: &LightLinks) -> bool {

@@ -80,8 +80,10 @@ pub struct Scene {
     pub film_transparent: bool,
     /// Width of microfacets up to which a transparent film is so seen through glass, too; `None` for no glass.
     pub transparent_glass: Option<f32>,
-    /// Surfaces that a path or a shadow ray may pass unscattered: see the setting of transparent bounces.
+    /// Surfaces that a path may pass unscattered: see the setting of transparent bounces.
     pub max_transparent: u32,
+    /// The same of a shadow ray, with those that its path has passed before.
+    max_transparent_shadow: u32,
     /// Opacity from which on a surface is what the data passes show.
     pub pass_alpha_threshold: f32,
     /// What the mist pass shows.

@@ -167,6 +167,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
             roughness * roughness
         }),
         max_transparent: settings.transparent_bounces,
+        max_transparent_shadow: settings.transparent_bounces.saturating_sub(desc.render.fewer_in_shadow),
         pass_alpha_threshold: desc.render.pass_alpha_threshold as f32,
         mist: Mist::of(settings),
         vectors,

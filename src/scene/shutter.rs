@@ -3,8 +3,8 @@
 //! Times of the description are frames after the frame itself; those of rays are 0 where the shutter opens and 1
 //! where it closes. How likely each is in between says [`Exposure`](crate::camera::Exposure).
 
-use super::effects::emits;
-use crate::desc::{CameraDesc, InstanceDesc, Motion, SceneDesc, ShapeRef, Visibility};
+use super::effects::is_met;
+use crate::desc::{CameraDesc, InstanceDesc, Motion, SceneDesc, ShapeRef};
 use crate::math::DAffine3;
 use crate::settings::Settings;
 
@@ -67,16 +67,10 @@ impl Shutter {
                 self.keys(&now, &motion).is_some()
             }
         };
-        let is_met = |instance: &InstanceDesc| {
-            let Visibility { camera, diffuse, glossy, transmission, shadow } = instance.visibility;
-            let mut materials = instance.materials.iter().flatten().map(|&m| &scene.materials[m as usize]);
-            camera || diffuse || glossy || transmission || shadow || instance.catcher || materials.any(emits)
-        };
         self.keys(&camera.transform, &camera.motion).is_some()
-            || scene
-                .instances
-                .iter()
-                .any(|instance| (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(instance))
+            || scene.instances.iter().any(|instance| {
+                (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(scene, instance)
+            })
     }
 }
 

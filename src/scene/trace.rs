@@ -67,7 +67,7 @@ impl Scene {
         let mut left = Rgb::WHITE;
         let (mut rest, mut t) = (*ray, 0.0);
         let mut within = self.effects.absorption.then(|| (*media, ray.d.length()));
-        for _ in u32::from(before)..=self.max_transparent.max(u32::from(before)) {
+        for _ in u32::from(before)..=self.max_transparent_shadow.max(u32::from(before)) {
             let hit = self.closest_hit(&rest, mask);
             if let Some((media, length)) = &within {
                 left *= media.transmitted(hit.map_or(rest.t_max, |hit| hit.t) * length);

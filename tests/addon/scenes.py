@@ -431,11 +431,14 @@ def particle_hair():
 
 
 def particle_fur():
-    """Hair of one radius: Cycles leaves the taper out of its normals."""
+    """Hair of one radius: Cycles leaves the taper out of its normals.
+
+    So thin that the ends, which are open in Cycles and round here (docs/blender.md), are a hundredth of what is lit.
+    """
     particle_hair()
     for settings in bpy.data.particles:
         settings.kink, settings.use_close_tip = "NO", False
-        settings.radius_scale, settings.root_radius, settings.tip_radius = 0.02, 1.0, 1.0
+        settings.radius_scale, settings.root_radius, settings.tip_radius = 0.006, 1.0, 1.0
 
 
 def particle_instances():

@@ -2,6 +2,7 @@
 
 import math
 
+import bpy
 
 _PROJECTION = ("lens", "sensor_width", "sensor_height", "sensor_fit", "shift_x", "shift_y", "clip_start", "clip_end",
                "ortho_scale")
@@ -80,6 +81,9 @@ def render(scene, size, view_layer):
     }
     if getattr(cycles, "film_transparent_glass", False):
         result["transparent_glass"] = cycles.film_transparent_roughness
+    if bpy.app.version < (5, 0):
+        # Of what properties.py adds for paths, shadow rays have nothing.
+        result["fewer_in_shadow"] = 1
     rectangle = border(scene, size)
     if rectangle is not None:
         result["border"] = rectangle

@@ -20,6 +20,8 @@ pub struct RenderData {
     pub film_transparent: bool,
     /// Roughness up to which it is not seen through glass either (`cycles.film_transparent_glass` and `…_roughness`).
     pub transparent_glass: Option<f64>,
+    /// How many surfaces fewer than a path a shadow ray passes.
+    pub fewer_in_shadow: u32,
     /// The view layer's.
     pub pass_alpha_threshold: f64,
     /// When the shutter opens and closes, frames after the frame; both 0 without motion blur.
@@ -42,6 +44,7 @@ impl Default for RenderData {
             exposure: 1.0,
             film_transparent: false,
             transparent_glass: None,
+            fewer_in_shadow: 0,
             pass_alpha_threshold: 0.5,
             shutter: [0.0; 2],
             shutter_curve: Vec::new(),
@@ -68,6 +71,7 @@ impl RenderData {
             }),
             film_transparent: Some(self.film_transparent),
             transparent_glass: self.transparent_glass,
+            fewer_in_shadow: self.fewer_in_shadow,
             pass_alpha_threshold: self.pass_alpha_threshold,
             aovs: self.aovs.iter().map(aov).collect(),
             ..RenderDesc::default()
