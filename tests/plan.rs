@@ -160,3 +160,35 @@ fn forced_effects_say_so() {
     let found = row(&plan(&plain().desc, &forced), "holdouts");
     assert!(found.on && found.because.starts_with("--effects all"), "{found:?}");
 }
+
+#[test]
+fn the_command_prints_a_table_and_json() {
+    let penumbra = |args: &[&str]| {
+        let root = env!("CARGO_MANIFEST_DIR");
+        std::process::Command::new(env!("CARGO_BIN_EXE_penumbra"))
+            .arg("plan")
+            .args(args)
+            .current_dir(root)
+            .output()
+            .unwrap()
+    };
+    let wheel = "scenes/wheel.usda";
+    let done = penumbra(&[wheel, "--passes", "combined,ao", "--size", "32x18", "--json"]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let effect = |name: &str| {
+        let rows = told["effects"].as_array().unwrap();
+        rows.iter().find(|row| row["effect"] == name).unwrap_or_else(|| panic!("no {name}"))
+    };
+    assert!(told["seconds_a_sample"].as_f64().unwrap() > 0.0);
+    assert_eq!(effect("motion blur")["on"], true);
+    assert_eq!(effect("ambient occlusion")["because"], "--passes ao");
+    assert!(effect("ambient occlusion")["share"].is_number(), "{}", effect("ambient occlusion"));
+    assert_eq!(effect("refraction")["on"], false);
+    let brief = penumbra(&[wheel, "--no-probe", "--brief"]);
+    let text = String::from_utf8(brief.stdout).unwrap();
+    assert!(text.contains("motion blur") && text.contains("not called for: ") && !text.contains("no surface has it"));
+    let missing = penumbra(&["nowhere.usda"]);
+    let said = String::from_utf8(missing.stderr).unwrap();
+    assert!(missing.status.code() == Some(1) && said.starts_with("error: ") && said.contains("nowhere.usda"), "{said}");
+}

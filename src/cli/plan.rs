@@ -20,7 +20,7 @@ pub fn command() -> Command {
         .args(given::view_args())
         .args(environment::args())
         .arg(flag("json").help("Print JSON"))
-        .arg(flag("all").help("Show what the scene does not call for, too, and why not; JSON always does"))
+        .arg(flag("brief").conflicts_with("json").help("Leave out why what is not simulated is not"))
         .arg(flag("no-probe").help("Leave out the measurement of times, which takes some seconds"))
         .args(given::setting_args())
 }
@@ -47,7 +47,7 @@ pub fn run(args: &ArgMatches) -> anyhow::Result<Outcome> {
     if args.get_flag("json") {
         say::out(format!("{:#}\n", as_json(&plan, &prepared.camera, prepared.scene.size)));
     } else {
-        say::out(table(&plan, args.get_flag("all")));
+        say::out(table(&plan, !args.get_flag("brief")));
     }
     Ok(Outcome::Done)
 }
@@ -73,7 +73,7 @@ fn as_json(plan: &Plan, camera: &str, size: [u32; 2]) -> Value {
     })
 }
 
-/// What is on, by subject, then a line of what is not; or a line for each.
+/// By subject; without `all` what is not simulated comes in one line at the end.
 fn table(plan: &Plan, all: bool) -> String {
     let mut text = String::new();
     if let Some(sample) = plan.sample {
@@ -89,7 +89,7 @@ fn table(plan: &Plan, all: bool) -> String {
     }
     if !all {
         let off: Vec<&str> = plan.rows.iter().filter(|row| !row.on).map(|row| row.effect).collect();
-        text += &format!("\nnot called for (--all says why): {}\n", off.join(", "));
+        text += &format!("\nnot called for: {}\n", off.join(", "));
     }
     text
 }

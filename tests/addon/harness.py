@@ -1,8 +1,11 @@
 """Runs in a headless Blender (the bpy package): the extension enabled, a job done, the answer as JSON.
 
     python harness.py JOB ANSWER.json [ARGUMENT...]
+    python harness.py serve
 
-JOB is a function of jobs.py, motion_jobs.py or pass_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where install.py put it.
+JOB is a function of jobs.py, motion_jobs.py or pass_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where
+install.py put it. With `serve` jobs come line by line, as JSON lists [LOG, JOB, ANSWER.json, ARGUMENT...], each in a Blender
+as new; what it prints goes to LOG, and a line says that it is done.
 """
 
 import json
@@ -16,8 +19,7 @@ import addon_utils
 EXTENSION = "bl_ext.user_default.penumbra"
 
 
-def main():
-    job, target, *arguments = sys.argv[1:]
+def do(job, target, *arguments):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon_utils.enable(EXTENSION)
     import jobs
@@ -33,6 +35,28 @@ def main():
         answer["traceback"] = traceback.format_exc()
     with open(target, "w") as file:
         json.dump(answer, file)
+
+
+def serve():
+    """Until the input ends."""
+    answers = os.fdopen(os.dup(1), "w")
+    for line in sys.stdin:
+        log, *job = json.loads(line)
+        with open(log, "w") as file:
+            os.dup2(file.fileno(), 1)
+            os.dup2(file.fileno(), 2)
+            do(*job)
+            sys.stdout.flush()
+            sys.stderr.flush()
+        answers.write("done\n")
+        answers.flush()
+    os._exit(0)
+
+
+def main():
+    if sys.argv[1] == "serve":
+        serve()
+    do(*sys.argv[1:])
     # Blender 4.x does not survive an engine that is registered at exit.
     addon_utils.disable(EXTENSION)
     if bpy.app.version < (4, 3):

@@ -62,6 +62,7 @@ def _unlike(expected, found, blocks=4):
             yield where, float(a.mean()), float(b.mean()), float(noise)
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize(
     "name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "falloff_linear", "world_image", "mesh_light",
              "principled", "see_through", "depth_of_field", "bokeh", "panorama", "instances", "curve_and_text", "textured", "points",
@@ -126,6 +127,7 @@ def test_the_sky_of_hosek_and_wilkie_is_that_of_cycles_by_another_fit(blender, t
         assert expected > 0.0 and abs(found / expected - 1.0) < 0.04, c
 
 
+@pytest.mark.by_turns
 def test_particle_hair_has_the_shape_of_cycles(blender, tmp_path):
     """Taper, shape, closed tips, curls and children: where the hair is, whatever light falls on it."""
     paths, _ = blender.run("side_by_side", "particle_hair", tmp_path, 64, 96)

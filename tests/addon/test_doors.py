@@ -28,6 +28,7 @@ def blocks(picture):
     return cut.mean(axis=1), cut.var(axis=1, ddof=1) / BLOCK**2
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("name", ["point_soft", "spot", "sun", "area_ellipse", "area_spread", "world_image", "principled",
                                   "textured", "see_through", "mesh_light", "depth_of_field", "panorama", "shifted"])
 def test_pictures_are_the_same(blender, tmp_path, name):

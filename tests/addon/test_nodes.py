@@ -30,6 +30,7 @@ def test_every_function_node_is_that_of_cycles(blender, tmp_path):
     assert not told, told
 
 
+@pytest.mark.by_turns
 def test_images_are_looked_up_as_in_cycles(blender, tmp_path):
     """Blended as stored, cubic, multiplied by alpha or not; from near and from afar."""
     answer, output = blender.run("image_wall", tmp_path)

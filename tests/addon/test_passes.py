@@ -52,6 +52,7 @@ def test_vectors_of_hair_are_those_of_cycles(blender, tmp_path):
     _assert_alike(expected, found, 0.1, 0.1, "hair")
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("transparent", ["on", "off"])
 def test_shadow_catchers_have_the_pass_of_cycles(blender, tmp_path, transparent):
     (expected, found), _ = _both(blender, tmp_path, "catcher", "Shadow Catcher", 256, "Shadow Catcher", "RGB", transparent)
