@@ -16,6 +16,8 @@ _PREVIEW_INTERVAL = 0.1
 
 # Viewports by the address of their engine: attributes of an engine are not all kept by Blender.
 VIEWPORTS = {}
+# What the last render of each scene simulated, by the scene's name.
+PLANS = {}
 
 
 def _shortcuts(scene):
@@ -85,9 +87,12 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             on_picture=None if bpy.app.background else show,
             picture_interval=_PREVIEW_INTERVAL if self.is_preview else 1.0,
             frame=scene.frame_current_final,
+            plan=not self.is_preview,
             **self._settings(scene, view_layer),
         )
         self._tell(picture.warnings)
+        if not self.is_preview:
+            PLANS[scene.name] = picture.plan
         self._fill(view_layer, picture)
 
     def _motion(self, depsgraph):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import passes
+from . import engine, passes
 
 _ENGINE = "PENUMBRA"
 
@@ -212,6 +212,34 @@ class PENUMBRA_PT_performance(_Panel, bpy.types.Panel):
         count.prop(render, "threads")
 
 
+class PENUMBRA_PT_effects(_Panel, bpy.types.Panel):
+    """What the last render simulated, and because of what."""
+
+    bl_label = "Effects"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        rows = engine.PLANS.get(context.scene.name)
+        if not rows:
+            self.layout.label(text="Render to see which effects the scene calls for", icon="INFO")
+            return
+        column = self.layout.column(align=True)
+        for row in rows:
+            if row["on"]:
+                line = column.split(factor=0.4)
+                line.label(text=row["effect"].capitalize())
+                line.label(text=row["because"])
+        off = [row for row in rows if not row["on"]]
+        column = self.layout.column(align=True)
+        column.active = False
+        column.label(text="Not there:")
+        for row in off:
+            line = column.split(factor=0.4)
+            line.label(text=row["effect"].capitalize())
+            line.label(text=row["because"])
+
+
 class PENUMBRA_PT_passes(_Panel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
@@ -319,6 +347,7 @@ PANELS = (
     PENUMBRA_PT_motion_blur_curve,
     PENUMBRA_PT_film,
     PENUMBRA_PT_performance,
+    PENUMBRA_PT_effects,
     PENUMBRA_PT_passes,
     PENUMBRA_PT_passes_shadow,
     PENUMBRA_PT_passes_data,

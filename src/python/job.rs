@@ -12,6 +12,7 @@ use super::picture::Picture;
 use penumbra::error::Result;
 use penumbra::film;
 use penumbra::output::Metadata;
+use penumbra::plan::Plan;
 use penumbra::render::Progress;
 
 /// How often the watcher is asked whether to go on, at least.
@@ -96,7 +97,8 @@ fn tell(py: Python<'_>, watch: &Watch, progress: Option<Progress>, picture: Opti
     py.check_signals()?;
     let mut heard = Heard { stop: false, picture: picture.is_some() };
     if let (Some(on_picture), Some(picture)) = (&watch.on_picture, picture) {
-        let picture = Picture { picture, metadata: Metadata::default(), half: false, interrupted: false };
+        let picture =
+            Picture { picture, metadata: Metadata::default(), half: false, plan: Plan::default(), interrupted: false };
         on_picture.call1(py, (picture,))?;
     }
     if let Some(observer) = &watch.observer {

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::exception;
 use penumbra::film;
 use penumbra::output::{Metadata, exr, png};
+use penumbra::plan::Plan;
 
 /// A picture: named layers of float32, rows from the top.
 #[pyclass(frozen)]
@@ -16,6 +18,8 @@ pub struct Picture {
     pub(super) picture: film::Picture,
     pub(super) metadata: Metadata,
     pub(super) half: bool,
+    /// What was simulated and why, where that was asked for.
+    pub(super) plan: Plan,
     /// True where the observer stopped the render.
     #[pyo3(get)]
     pub(super) interrupted: bool,
@@ -48,6 +52,21 @@ impl Picture {
     #[getter]
     fn layers(&self) -> Vec<&str> {
         self.picture.layers.iter().map(|layer| layer.name.as_str()).collect()
+    }
+
+    /// Which effects were simulated, where `plan=True` asked for that: dicts of subject, effect, on, because, adds.
+    #[getter]
+    fn plan<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let row = |row: &penumbra::plan::Row| {
+            let dict = PyDict::new(py);
+            dict.set_item("subject", row.subject)?;
+            dict.set_item("effect", row.effect)?;
+            dict.set_item("on", row.on)?;
+            dict.set_item("because", &row.because)?;
+            dict.set_item("adds", &row.adds)?;
+            Ok(dict)
+        };
+        self.plan.rows.iter().map(row).collect()
     }
 
     /// Samples per pixel, the mean.

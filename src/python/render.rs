@@ -17,6 +17,7 @@ use penumbra::film::Quantity;
 use penumbra::import::{self, ImportOptions};
 use penumbra::job;
 use penumbra::job::resume::{self, Saver};
+use penumbra::plan::Plan;
 use penumbra::render::{Start, render_from};
 use penumbra::scene::prepare;
 use penumbra::settings::{SETTINGS, Settings};
@@ -35,11 +36,12 @@ enum Source<'py> {
 /// nothing is new), and stops the render by a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
 ///
 /// `state` names a file: the render goes on from what it holds, where it is there, as if it had never stopped, and
-/// leaves all that it takes to go on in it; with `checkpoint` that is saved every so many seconds, too.
+/// leaves all that it takes to go on in it; with `checkpoint` that is saved every so many seconds, too. With `plan` the
+/// picture's `plan` says which effects were simulated, and why.
 #[pyfunction]
 #[pyo3(signature = (scene, *, camera=None, size=None, frame=None, subdivision=2, variants=Vec::new(),
     observer=None, on_picture=None, picture_interval=1.0, state=None,
-    checkpoint=None, **settings))]
+    checkpoint=None, plan=false, **settings))]
 pub fn render(
     py: Python<'_>,
     scene: &Bound<'_, PyAny>,
@@ -53,6 +55,7 @@ pub fn render(
     picture_interval: f64,
     state: Option<PathBuf>,
     checkpoint: Option<f64>,
+    plan: bool,
     settings: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Picture> {
     let (settings, passes_given) = settings_of(settings)?;
@@ -88,7 +91,9 @@ pub fn render(
             Some(path) => resume::open(path, &identity)?,
             None => None,
         };
+        let authored = plan.then(|| desc.clone());
         let prepared = prepare(desc, &view, &settings)?;
+        let plan = authored.map(|desc| Plan::of(&desc, &prepared, &settings)).unwrap_or_default();
         warnings.extend(prepared.warnings.clone());
         let start = match found {
             Some(file) => resume::read(file, &prepared.scene, &settings)?,
@@ -110,7 +115,7 @@ pub fn render(
             warnings.push(&Place::default(), what);
         }
         let metadata = job::metadata(name, frame, &prepared, &rendered, &settings, identity, &warnings);
-        Ok(Picture { picture: rendered.film.develop(), metadata, half, interrupted: rendered.interrupted })
+        Ok(Picture { picture: rendered.film.develop(), metadata, half, plan, interrupted: rendered.interrupted })
     })
 }
 

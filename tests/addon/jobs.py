@@ -3,6 +3,7 @@
 import json
 import os
 import time
+import types
 
 import bpy
 import numpy as np
@@ -77,6 +78,40 @@ def f12(folder):
     path = os.path.join(folder, "f12.exr")
     _render(path)
     return path
+
+
+def effects(folder):
+    """What the panel says before and after a render of a scene with glass and an ao pass."""
+    from bl_ext.user_default.penumbra import panels
+
+    class Layout:
+        def __init__(self, texts):
+            self.texts = texts
+
+        def label(self, text, icon="NONE"):
+            self.texts.append(text)
+
+        def column(self, align=False):
+            return self
+
+        def split(self, factor):
+            return self
+
+    def drawn():
+        panel = types.SimpleNamespace(layout=Layout([]))
+        panels.PENUMBRA_PT_effects.draw(panel, bpy.context)
+        return panel.layout.texts
+
+    _scene(spp=4)
+    _room()
+    glass = bpy.data.materials.new("Pane")
+    glass.use_nodes = True
+    glass.node_tree.nodes["Principled BSDF"].inputs["Transmission Weight"].default_value = 1.0
+    next(obj for obj in bpy.data.objects if obj.type == "MESH").data.materials.append(glass)
+    bpy.context.view_layer.use_pass_ambient_occlusion = True
+    before = drawn()
+    _render(os.path.join(folder, "effects.exr"))
+    return [before, drawn()]
 
 
 def mesh_time(count):

@@ -45,6 +45,16 @@ def test_f12_fills_every_pass(blender, tmp_path):
     assert 0.2 < occlusion.max() <= 1.001 and occlusion.min() >= 0.0
 
 
+def test_the_panel_says_what_was_simulated_and_why(blender, tmp_path):
+    (before, after), _ = blender.run("effects", tmp_path)
+    assert before == ["Render to see which effects the scene calls for"]
+    rows = dict(zip(after, after[1:]))
+    there = after[: after.index("Not there:")]
+    assert "Pane" in rows["Refraction"] and "Refraction" in there
+    assert rows["Ambient occlusion"] == "--passes ao" and "Ambient occlusion" in there
+    assert "Motion blur" not in there and rows["Motion blur"] == "the shutter does not open"
+
+
 def _unlike(expected, found, blocks=4):
     """Where one channel of a picture is not the other's: in its mean, and in those of `blocks`² parts of it.
 

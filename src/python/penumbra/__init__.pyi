@@ -28,6 +28,7 @@ class Picture:
     camera: str
     warnings: list[str]
     interrupted: bool
+    plan: list[dict[str, Any]]
     def channels(self, name: str) -> str: ...
     def __getitem__(self, name: str) -> NDArray[np.float32]: ...
     def __contains__(self, name: object) -> bool: ...
@@ -109,6 +110,7 @@ def render(
     observer: Callable[[Progress | None], object] | None = None,
     on_picture: Callable[[Picture], object] | None = None,
     picture_interval: float = 1.0,
+    plan: bool = False,
     passes: Sequence[str] | str | None = None,
     spp: int | None = None,
     time: float | None = None,
