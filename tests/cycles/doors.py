@@ -6,6 +6,10 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import exr  # noqa: E402
+
 FILES = {"usd": "scene.usdc", "gltf": "scene.glb"}
 DOORS = ("blender", *FILES)
 # Passes of Penumbra that Cycles has too, as the command line calls them.
@@ -34,8 +38,9 @@ def render(program, folder, door, facts, size, samples):
 
 def compare(program, reference, folder, door, *options):
     """The verdict on each pass; `reference` is a folder with cycles-1.exr and cycles-2.exr."""
-    files = [reference / "cycles-1.exr", folder / f"{door}-1.exr"]
-    command = [program, "compare", *files, "--more-a", reference / "cycles-2.exr", "--more-b", folder / f"{door}-2.exr", "--json", *options]
+    files = [exr.with_light(path / f"{who}-{seed}.exr", folder / f"{side}-{seed}.exr", first=path / f"{who}-1.exr")
+             for side, path, who in (("a", reference, "cycles"), ("b", folder, door)) for seed in (1, 2)]
+    command = [program, "compare", files[0], files[2], "--more-a", files[1], "--more-b", files[3], "--json", *options]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["passes"]
