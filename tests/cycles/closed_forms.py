@@ -46,9 +46,9 @@ def stand(samples, material=None, size=100.0, camera=(0.0, 0.0), height=10.0, wi
     """A floor, and a camera so narrow that the picture is one point of it."""
     lab.reset((4, 4), samples, threads=2)
     scenes.world(0.0)
-    # The camera looks inside a triangle, not at an edge.
-    low, high = -0.37 * size, 0.63 * size
-    lab.mesh("Floor", [(low, low, 0), (high, low, 0), (high, high, 0), (low, high, 0)], [(0, 1, 2, 3)],
+    # The camera looks into a triangle, not at the edge between two: Cycles' rays into glass meet the neighbour there.
+    left, right, front, back = (share * size for share in (-0.37, 0.63, -0.55, 0.45))
+    lab.mesh("Floor", [(left, front, 0), (right, front, 0), (right, back, 0), (left, back, 0)], [(0, 1, 2, 3)],
              material() if material else scenes.material("Floor", "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
     seen = lab.orthographic_camera((camera[0], camera[1] - height * math.sin(turn), height * math.cos(turn)), width)
     seen.rotation_euler = (turn, 0.0, 0.0)
@@ -123,8 +123,8 @@ def wall():
             "what makes faces in one place right, and costs the last row: 0.1 mm from a wall of 2 km.", rows)
 
 
-def reflected(cos, alpha, ior, steps=512):
-    """What GGX microfacets of a dielectric reflect of a view at `cos`, and what they would if they were white.
+def scattered(cos, alpha, ior, steps=512):
+    """What GGX microfacets of a dielectric reflect and refract of a view at `cos`, and what they would reflect if they were white.
 
     Over visible normals (Heitz 2018), by the midpoint rule: of each the share that Smith's masking lets out.
     """
@@ -144,49 +144,67 @@ def reflected(cos, alpha, ior, steps=512):
     h *= [alpha, alpha, 1.0]
     h /= np.linalg.norm(h, axis=-1, keepdims=True)
     towards = h @ view
-    out = 2.0 * towards * h[..., 2] - view[2]
+    cos_t = np.sqrt(1.0 - (1.0 - towards**2) / ior**2)
+    fresnel = 0.5 * (((towards - ior * cos_t) / (towards + ior * cos_t)) ** 2 + ((ior * towards - cos_t) / (ior * towards + cos_t)) ** 2)
 
     def hidden(z):
         z = np.maximum(z, 1e-12)
         return 0.5 * (np.sqrt(1.0 + alpha**2 * (1.0 - z * z) / (z * z)) - 1.0)
 
-    leaves = np.where(out > 0.0, (1.0 + hidden(cos)) / (1.0 + hidden(cos) + hidden(out)), 0.0)
-    cos_t = np.sqrt(1.0 - (1.0 - towards**2) / ior**2)
-    fresnel = 0.5 * (((towards - ior * cos_t) / (towards + ior * cos_t)) ** 2 + ((ior * towards - cos_t) / (ior * towards + cos_t)) ** 2)
-    return (fresnel * leaves).mean(), leaves.mean()
+    def leaves(z):
+        return np.where(z > 0.0, (1.0 + hidden(cos)) / (1.0 + hidden(cos) + hidden(z)), 0.0)
+
+    up = leaves(2.0 * towards * h[..., 2] - view[2])
+    down = leaves(view[2] / ior - (towards / ior - cos_t) * h[..., 2])
+    return (fresnel * up).mean(), ((1.0 - fresnel) * down).mean(), up.mean()
 
 
 def plastic_albedo(cos, roughness, ior):
     """With what scatters more than once, by the formula of Blender's Principled BSDF (Turquin; Kulla and Conty's mean)."""
     alpha = roughness**2
-    single, white = reflected(cos, alpha, ior)
+    single, _, white = scattered(cos, alpha, ior)
     nodes, weights = np.polynomial.legendre.leggauss(16)
     mu = 0.5 * (nodes + 1.0)
-    mean = sum(w * m * reflected(m, alpha, ior, 128)[1] for m, w in zip(mu, weights))
+    mean = sum(w * m * scattered(m, alpha, ior, 128)[2] for m, w in zip(mu, weights))
     fresnel = (ior - 1.0) / (4.08567 + 1.00071 * ior)
     several = fresnel * mean / (1.0 - fresnel * (1.0 - mean))
     return single * (1.0 + several * (1.0 - white) / white)
 
 
-def plastic():
-    """The color of a rough reflection, and the light it reflects of a white world."""
+def glass_albedo(cos, roughness, ior):
+    """What is refracted: what scatters more than once leaves in the same proportion, so that nothing is lost."""
+    reflects, refracts, _ = scattered(cos, roughness**2, ior)
+    return refracts / (reflects + refracts)
+
+
+def colors(name, kind, what, truth, **inputs):
+    """Color, and color times direct light in a white world, of a rough surface."""
     color, light = [], []
     for roughness in (0.2, 0.5, 1.0):
         for degrees in (0, 45, 60, 75):
             turn = math.radians(degrees)
-            stand(1, lambda: scenes.material("Plastic", Base_Color=(0.0, 0.0, 0.0, 1.0), Roughness=roughness, IOR=1.5), turn=turn)
+            stand(1, lambda: scenes.material(name, Roughness=roughness, IOR=1.5, **inputs), turn=turn)
             scenes.world(1.0)
-            truth = plastic_albedo(math.cos(turn), roughness, 1.5)
-            found = measure(["Glossy Color", "Glossy Direct"], 16384)
-            name = f"{roughness:g}, {degrees}°"
-            color.append([name, truth, *(found[engine][0] for engine in ENGINES)])
-            light.append([name, truth, *(found[engine][0] * found[engine][1] for engine in ENGINES)])
-    return [("Color of a rough reflection", "roughness, angle", "Glossy Color of black plastic of index 1.5: the share of light that it reflects to the camera; "
-             "right is the integral over GGX' visible normals, with Blender's law for what scatters more than once. Cycles writes an estimate, and divides the light by it.", color),
-            ("Light of a rough reflection", "roughness, angle", "Glossy Color × Glossy Direct of the same in a world of radiance 1: the light itself.", light)]
+            right = truth(math.cos(turn), roughness, 1.5)
+            found = measure([f"{kind} Color", f"{kind} Direct"], 16384)
+            at = f"{roughness:g}, {degrees}°"
+            color.append([at, right, *(found[engine][0] for engine in ENGINES)])
+            light.append([at, right, *(found[engine][0] * found[engine][1] for engine in ENGINES)])
+    return [(f"Color of {name.lower()}", "roughness, angle", f"{kind} Color of {what}; right is the integral over GGX' visible normals, with Blender's law for what scatters "
+             "more than once. Cycles writes an estimate, and divides the light by it.", color),
+            (f"Light of {name.lower()}", "roughness, angle", f"{kind} Color × {kind} Direct of the same in a world of radiance 1: the light itself.", light)]
 
 
-CASES = {"rectangle": rectangle, "coincident": coincident, "soft": lambda: point(True), "sphere": lambda: point(False), "wall": wall, "plastic": plastic}
+def plastic():
+    return colors("Plastic", "Glossy", "black plastic of index 1.5: the share of light that it reflects to the camera", plastic_albedo, Base_Color=(0.0, 0.0, 0.0, 1.0))
+
+
+def glass():
+    return colors("Glass", "Transmission", "the upper side of white glass of index 1.5: the share of light from below that it lets through to the camera", glass_albedo,
+                  Base_Color=(1.0, 1.0, 1.0, 1.0), Transmission_Weight=1.0)
+
+
+CASES = {"rectangle": rectangle, "coincident": coincident, "soft": lambda: point(True), "sphere": lambda: point(False), "wall": wall, "plastic": plastic, "glass": glass}
 
 
 def main():

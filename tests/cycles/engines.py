@@ -106,6 +106,10 @@ def main():
         addon.register(options.wheel)
     stage = stages.STAGES[options.stage]
     stage.build()
+    # What has no material has another default in each format.
+    for obj in bpy.data.objects:
+        if obj.type in ("MESH", "CURVES") and not obj.data.materials:
+            obj.data.materials.append(bpy.data.materials["Plain"])
     for material in bpy.data.materials:
         as_principled(material.node_tree)
     options.folder.mkdir(parents=True, exist_ok=True)

@@ -102,7 +102,7 @@ def _closed_forms(tables):
     return lines
 
 
-def document(path, out, found, facts, options, seconds, cores, tables):
+def document(path, out, found, facts, run, tables):
     """docs/validation/cycles.md and its pictures."""
     judged = [it for by_door in found.values() for passes in by_door.values() for it in passes if it["verdict"] != "not judged"]
     differs = [it for it in judged if it["verdict"] == "differs"]
@@ -114,7 +114,7 @@ def document(path, out, found, facts, options, seconds, cores, tables):
         "*Export for Penumbra* wrote as USD and as glTF. Cycles is set to be unbiased; Shadow and Unshadowed are taken from two renders of",
         "its more, where all light is of lamps, since it has no such pass. Glossy Light and Transmission Light are color × direct and",
         "color × indirect, of both sides.", "",
-        f"{options.size.replace('x', ' × ')} pixels, two pictures of {options.samples} samples by each; the whole took {seconds / 60:.0f} minutes on {cores} cores.", "",
+        f"{run['size'].replace('x', ' × ')} pixels, two pictures of {run['samples']} samples by each; the whole took {run['seconds'] / 60:.0f} minutes on {run['cores']} cores.", "",
         f"**{len(judged)} passes judged: {len(judged) - len(differs)} agree, {known} differ for a [known reason](#exceptions), {len(differs) - known} differ without one.**",
         "A pass differs where the mean of some block of 16 × 16 pixels, or of the picture, is off by more than three standard errors (corrected for",
         "the number of tests) *and* by more than 0.5 % of the pass's mean ([how](../compare.md)).", "",

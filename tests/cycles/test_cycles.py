@@ -42,7 +42,7 @@ def wheel(tmp_path_factory):
 
 def differing(passes, facts, door):
     """Sentences on the passes that differ, but for those that are known to."""
-    known = facts["passes"].get(door, {})
+    known = facts["passes"][door]
     return [f"{door} {it['pass']}: {it['why']}" for it in passes if it["verdict"] == "differs" and it["pass"] not in known]
 
 

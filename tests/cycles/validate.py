@@ -73,7 +73,8 @@ def make_references(names, facts, wheel):
 
 def tell_facts(facts):
     """What the tests have to know, of the stages that have references."""
-    there = {name: it for name, it in facts.items() if (REFERENCES / name / "cycles-2.exr").exists()}
+    there = {name: {**it, "passes": {door: sorted(passes) for door, passes in it["passes"].items()}}
+             for name, it in facts.items() if (REFERENCES / name / "cycles-2.exr").exists()}
     text = json.dumps({"size": REFERENCE_SIZE, "samples": REFERENCE_SAMPLES, "stages": there}, indent=1)
     (REFERENCES / "facts.json").write_text(text + "\n")
 
@@ -122,8 +123,11 @@ def main():
         print(f"{name}: {time.time() - begun:.0f} s; {'differs: ' + ', '.join(wrong) if wrong else 'agrees'}", flush=True)
     report.index(OUT, found, facts)
     if not options.stages:
-        tables = closed_forms(wheel)
-        report.document(ROOT / "docs" / "validation" / "cycles.md", OUT, found, facts, options, time.time() - start, os.cpu_count(), tables)
+        tables = closed_forms(None if options.again else wheel)
+        run = OUT / "run.json"
+        if not options.again:
+            run.write_text(json.dumps({"size": options.size, "samples": options.samples, "seconds": time.time() - start, "cores": os.cpu_count()}))
+        report.document(ROOT / "docs" / "validation" / "cycles.md", OUT, found, facts, json.loads(run.read_text()), tables)
     return any(it["verdict"] == "differs" and not it["known"] for doors_ in found.values() for passes in doors_.values() for it in passes)
 
 
