@@ -38,9 +38,12 @@ def render(program, folder, door, facts, size, samples):
 
 def compare(program, reference, folder, door, *options):
     """The verdict on each pass; `reference` is a folder with cycles-1.exr and cycles-2.exr."""
-    files = [exr.with_light(path / f"{who}-{seed}.exr", folder / f"{side}-{seed}.exr", first=path / f"{who}-1.exr")
-             for side, path, who in (("a", reference, "cycles"), ("b", folder, door)) for seed in (1, 2)]
-    command = [program, "compare", files[0], files[2], "--more-a", files[1], "--more-b", files[3], "--json", *options]
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    # The page shows the names that it was given.
+    where = folder / "compared"
+    where.mkdir(exist_ok=True)
+    files = [exr.with_light(path / f"{who}-{seed}.exr", where / f"{side}-{seed}.exr", first=path / f"{who}-1.exr").name
+             for side, path, who in (("cycles", reference, "cycles"), (f"{door} again" if door == "cycles" else door, folder, door)) for seed in (1, 2)]
+    command = [Path(program).resolve(), "compare", files[0], files[2], "--more-a", files[1], "--more-b", files[3], "--json", *options]
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, cwd=where)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["passes"]
