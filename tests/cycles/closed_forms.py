@@ -1,9 +1,9 @@
 """Where a closed form, or an integral in double precision, says what is right: it, Cycles and Penumbra side by side.
 
-    python closed_forms.py FOLDER --wheel FILE [--only NAME,NAME]
+    python closed_forms.py FOLDER --wheel FILE [--only NAME,NAME] [--engines PENUMBRA]
 
 writes tables.json into FOLDER: for each case what was measured, and rows of the argument, the value that is right and
-those of both engines. `validate.py` calls it and puts the tables into its document.
+those of both engines. `validate.py` calls it and puts the tables into its document, `test_cycles.py` for Penumbra alone.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import addon
 import lab
 import scenes
 
-ENGINES = ("CYCLES", "PENUMBRA")
+ENGINES = ["CYCLES", "PENUMBRA"]
 
 
 def measure(passes, samples):
@@ -212,7 +212,9 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--wheel", required=True)
     parser.add_argument("--only", default=",".join(CASES))
+    parser.add_argument("--engines", default=",".join(ENGINES))
     options = parser.parse_args()
+    ENGINES[:] = options.engines.split(",")
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon.register(options.wheel)
     tables = []

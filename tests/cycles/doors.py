@@ -32,6 +32,7 @@ def render(program, folder, door, facts, size, samples):
         command = [program, "render", folder / FILES[door], "-o", folder / f"{door}-{seed}.exr", "--spp", samples, "--seed", seed,
                    "--max-bounces", facts["bounces"], "--filter", "box:0.5", "--size", f"{size[0]}x{size[1]}", "--passes", PASSES,
                    "--ao-distance", facts["ao_distance"], "--progress", "none"]
+        command += ["--frame", facts["frame"]] if facts["frame"] is not None else []
         done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
 

@@ -124,7 +124,7 @@ def main():
     if "files" in wanted:
         scene.render.engine = "PENUMBRA"
         for ending in ("usdc", "glb"):
-            bpy.ops.penumbra.export(filepath=str(options.folder / f"scene.{ending}"))
+            bpy.ops.penumbra.export(filepath=str(options.folder / f"scene.{ending}"), animation=scene.render.use_motion_blur)
 
 
 if __name__ == "__main__":

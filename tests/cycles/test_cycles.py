@@ -102,3 +102,21 @@ def test_a_bias_of_five_percent_is_found(tmp_path, wheel):
     verdicts = {it["pass"]: it["verdict"] for it in passes}
     assert verdicts["Combined"] == verdicts["Diffuse Direct"] == "differs"
     assert verdicts["Ambient Occlusion"] != "differs" and verdicts["Shadow"] != "differs"
+
+
+def test_closed_forms(tmp_path, wheel):
+    """Where it is known what is right, Penumbra is: light within 0.1 %, its division into a color and the rest within 0.5 %."""
+    done = subprocess.run([sys.executable, HERE / "closed_forms.py", tmp_path, "--wheel", wheel, "--engines", "PENUMBRA"], capture_output=True, text=True)
+    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+    tables = json.loads((tmp_path / "tables.json").read_text())
+    # Nearer to a face than rounding is as if on it, which the table says.
+    known = ("Ambient occlusion beside a wall", "0.0001 m, faces of 2000 m")
+    wrong, rows = [], 0
+    for table in tables:
+        bar = 0.005 if table["title"].startswith("Color") else 0.001
+        for name, truth, found in table["rows"]:
+            rows += 1
+            if abs(found / truth - 1.0) > bar and (table["title"], name) != known:
+                wrong.append(f"{table['title']}, {name}: {found} instead of {truth}")
+    assert not wrong, "\n".join(wrong)
+    assert rows > 60

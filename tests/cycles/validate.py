@@ -51,9 +51,11 @@ def all_facts():
         "for name, it in stages.STAGES.items():\n"
         "    bpy.ops.wm.read_factory_settings(use_empty=True)\n"
         "    it.build()\n"
-        "    distance = bpy.context.scene.world.light_settings.distance\n"
+        "    scene = bpy.context.scene\n"
+        "    distance = scene.world.light_settings.distance\n"
+        "    frame = scene.frame_current if scene.render.use_motion_blur else None\n"
         "    passes = {door: {**stages.FACTORS, **stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
-        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance)\n"
+        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance, frame=frame)\n"
         "print('FACTS' + json.dumps(facts))\n"
     )
     done = subprocess.run([sys.executable, "-c", code, HERE], capture_output=True, text=True)
