@@ -58,6 +58,12 @@ def moving():
     scene.frame_set(1)
 
 
+def blurred():
+    moving()
+    render = bpy.context.scene.render
+    render.use_motion_blur, render.motion_blur_shutter, render.motion_blur_position = True, 0.6, "START"
+
+
 def instances():
     """Geometry nodes that instance what is no object's, and two instances of a collection that holds a lamp."""
     scenes.room()

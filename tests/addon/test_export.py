@@ -113,6 +113,18 @@ def test_what_moves_is_there_at_each_frame(blender, tmp_path, ending):
     assert left == []
 
 
+@pytest.mark.parametrize("ending", ["usdc", "usdz"])
+def test_the_shutter_is_that_of_the_scene(blender, tmp_path, ending):
+    path = tmp_path / f"blurred.{ending}"
+    _, output = blender.run("export", "blurred", path, "animation")
+    (camera,) = read(path, "--frame", "3")[0]["cameras"]
+    if "the shutter of the cameras is not exported" in output:
+        # The package bpy comes without pxr, which Blender has.
+        assert ending == "usdz" or "this Blender has no pxr" in output
+    else:
+        assert ending == "usdc" and close(camera["shutter"], [0.0, 0.6], 1e-6)
+
+
 @pytest.mark.parametrize("options", [(), ("instancing",)])
 @pytest.mark.parametrize("ending", ["usdc", "glb"])
 def test_lamps_in_instances_shine_where_they_stand(blender, tmp_path, ending, options):

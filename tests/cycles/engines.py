@@ -19,10 +19,10 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / "benches" / "cycles")]
 
 import bpy  # isort: skip (what follows is found through it)
 import numpy as np
-import OpenImageIO as oiio
 
 import addon
 import stages
+from exr import parts, save
 from lab import write
 
 PASSES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "diffuse_direct", "diffuse_indirect",
@@ -55,35 +55,6 @@ def prepare(stage, size, samples):
         layer.penumbra.use_pass_shadow = layer.penumbra.use_pass_unshadowed = True
         scene.penumbra.spp, scene.penumbra.max_bounces = samples, stage.bounces
     return scene
-
-
-def parts(path):
-    """Name to (channel names, pixels)."""
-    file, found, index = oiio.ImageInput.open(str(path)), {}, 0
-    while file.seek_subimage(index, 0):
-        spec = file.spec()
-        found[spec.getattribute("oiio:subimagename")] = (spec.channelnames, file.read_image(index, 0, 0, spec.nchannels, "float"))
-        index += 1
-    file.close()
-    return found
-
-
-def save(path, found, half=()):
-    """Writes parts; those whose name is in `half` as half floats."""
-    specs = []
-    for name, (channels, pixels) in found.items():
-        spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], len(channels), "half" if name in half else "float")
-        spec.channelnames = channels
-        spec.attribute("compression", "zip")
-        spec.attribute("oiio:subimagename", name)
-        specs.append(spec)
-    out = oiio.ImageOutput.create(str(path))
-    assert out.open(str(path), tuple(specs)), out.geterror()
-    for index, (spec, (_, pixels)) in enumerate(zip(specs, found.values())):
-        if index:
-            assert out.open(str(path), spec, "AppendSubimage"), out.geterror()
-        assert out.write_image(np.ascontiguousarray(pixels, np.float32)), out.geterror()
-    out.close()
 
 
 def cycles(stage, folder, seed):
@@ -135,6 +106,10 @@ def main():
         addon.register(options.wheel)
     stage = stages.STAGES[options.stage]
     stage.build()
+    # What has no material has another default in each format.
+    for obj in bpy.data.objects:
+        if obj.type in ("MESH", "CURVES") and not obj.data.materials:
+            obj.data.materials.append(bpy.data.materials["Plain"])
     for material in bpy.data.materials:
         as_principled(material.node_tree)
     options.folder.mkdir(parents=True, exist_ok=True)
@@ -149,7 +124,7 @@ def main():
     if "files" in wanted:
         scene.render.engine = "PENUMBRA"
         for ending in ("usdc", "glb"):
-            bpy.ops.penumbra.export(filepath=str(options.folder / f"scene.{ending}"))
+            bpy.ops.penumbra.export(filepath=str(options.folder / f"scene.{ending}"), animation=scene.render.use_motion_blur)
 
 
 if __name__ == "__main__":

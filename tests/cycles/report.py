@@ -46,39 +46,104 @@ def _cell(it):
     return f"**{text}**" if it["verdict"] == "differs" else text
 
 
-def document(path, out, found, facts, options, seconds, cores):
+def _state(passes):
+    """Of one stage through one door: how many agree, and what does not."""
+    judged = [it for it in passes if it["verdict"] != "not judged"]
+    wrong = [it for it in judged if it["verdict"] == "differs"]
+    known = sum(bool(it["known"]) for it in wrong)
+    text = f"{len(judged) - len(wrong)} agree"
+    if known:
+        text += f", {known} excepted"
+    if len(wrong) > known:
+        text += f", **{len(wrong) - known} differ**"
+    return text
+
+
+def _exceptions(found, facts):
+    """Each reason once, with the passes that differ by it, where, and by how much."""
+    reasons = {}
+    for name, by_door in found.items():
+        for door, passes in by_door.items():
+            for it in passes:
+                if it["verdict"] == "differs" and it["known"]:
+                    at = reasons.setdefault(it["known"], {}).setdefault(it["pass"], {})
+                    at.setdefault(door, []).append((name, it["bias_share"]))
+    lines = []
+    for reason, passes in reasons.items():
+        lines += [f"- {reason[0].upper() + reason[1:]}:"]
+        for which, doors in passes.items():
+            for door, at in doors.items():
+                stages = "all stages" if len(at) == len(found) else ", ".join(name for name, _ in at) if len(at) <= 6 else f"{len(at)} stages"
+                shares = [100 * abs(share) for _, share in at if share is not None]
+                lines.append(f"    - {which}, {NAMES[door]}: {stages}" + (f"; bias up to {max(shares):.2f} %" if shares else ""))
+    for door in NAMES:
+        missing = {}
+        for name in found:
+            if why := facts[name]["doors"].get(door):
+                missing.setdefault(why, []).append(name)
+        lines += [f"- Not through {NAMES[door]}, {why}: {', '.join(names)}." for why, names in missing.items()]
+    return lines or ["None."]
+
+
+def _figure(value):
+    return f"{value:.4g}"
+
+
+def _closed_forms(tables):
+    lines = []
+    for table in tables:
+        lines += [f"### {table['title']}", "", table["what"], "", f"| {table['argument']} | right | Cycles | Penumbra | Cycles is off by | Penumbra is off by |", "|---|---|---|---|---|---|"]
+        for name, truth, *both in table["rows"]:
+            shares = [100 * (value / truth - 1.0) for value in both]
+            # What is off by more than one percent stands out.
+            shares = [f"**{share:+.3g} %**" if abs(share) > 1.0 else f"{share:+.3f} %" for share in shares]
+            lines.append(f"| {name} | {_figure(truth)} | " + " | ".join(_figure(value) for value in both) + " | " + " | ".join(shares) + " |")
+        lines.append("")
+    return lines
+
+
+def document(path, out, found, facts, run, tables):
     """docs/validation/cycles.md and its pictures."""
     judged = [it for by_door in found.values() for passes in by_door.values() for it in passes if it["verdict"] != "not judged"]
     differs = [it for it in judged if it["verdict"] == "differs"]
+    known = sum(bool(it["known"]) for it in differs)
     lines = [
         "# Every pass beside Cycles", "",
         "Made by `python tests/cycles/validate.py`; do not edit. Penumbra is held against Cycles 5.0.1 on every stage of",
         "[tests/cycles/stages.py](../../tests/cycles/stages.py), pass by pass, through three doors: the add-on, and the command line on what",
         "*Export for Penumbra* wrote as USD and as glTF. Cycles is set to be unbiased; Shadow and Unshadowed are taken from two renders of",
-        "its more, where all light is of lamps, since it has no such pass.", "",
-        f"{options.size.replace('x', ' × ')} pixels, two pictures of {options.samples} samples by each; the whole took {seconds / 60:.0f} minutes on {cores} cores.", "",
-        f"**{len(judged)} passes judged, {len(judged) - len(differs)} agree, {len(differs)} differ**, of which {sum(not it['known'] for it in differs)} without a known reason.",
+        "its more, where all light is of lamps, since it has no such pass. Glossy Light and Transmission Light are color × direct and",
+        "color × indirect, of both sides.", "",
+        f"{run['size'].replace('x', ' × ')} pixels, two pictures of {run['samples']} samples by each; the whole took {run['seconds'] / 60:.0f} minutes on {run['cores']} cores.", "",
+        f"**{len(judged)} passes judged: {len(judged) - len(differs)} agree, {known} differ for a [known reason](#exceptions), {len(differs) - known} differ without one.**",
         "A pass differs where the mean of some block of 16 × 16 pixels, or of the picture, is off by more than three standard errors (corrected for",
-        "the number of tests) *and* by more than 0.5 % of the pass's mean ([how](../compare.md)). Cells are the bias of the whole picture in percent",
-        "of the pass's mean, with its standard error; *same* is bit for bit; bold is what differs.", "",
-        "![Cycles, Penumbra, and their differences](../pictures/validation.jpg)", "",
-        "*For each stage Combined, Ambient Occlusion and Shadow: Cycles, Penumbra through the add-on, difference × 4 about grey.*", "",
+        "the number of tests) *and* by more than 0.5 % of the pass's mean ([how](../compare.md)).", "",
+        "| stage | what | " + " | ".join(NAMES.values()) + " |", "|---|---|" + "---|" * len(NAMES),
     ]
     for name, by_door in found.items():
-        lines += [f"## {name}", "", facts[name]["what"] + ".", "", "| pass | " + " | ".join(NAMES[door] for door in by_door) + " |", "|---|" + "---|" * len(by_door)]
+        cells = [_state(by_door[door]) if door in by_door else "—" for door in NAMES]
+        lines.append(f"| [{name}](#{name}) | {facts[name]['what']} | " + " | ".join(cells) + " |")
+    lines += [
+        "", "![Cycles, Penumbra, and their differences](../pictures/validation.jpg)", "",
+        "*For each stage Combined, Ambient Occlusion and Shadow: Cycles, Penumbra through the add-on, difference × 4 about grey. Where light is",
+        "not of lamps alone Cycles has no Shadow.*", "",
+        "## Exceptions", "", *_exceptions(found, facts), "",
+    ]
+    if tables:
+        lines += ["## Where it is known what is right", "", "One point of a floor, by both engines through Blender, beside a closed form or an integral in double precision;",
+                  "figures that are off by more than 1 % are bold ([how](../../tests/cycles/closed_forms.py)).", "", *_closed_forms(tables)]
+    lines += ["## The stages", "", "Bias of the whole picture in percent of the pass's mean, with its standard error; *same* is bit for bit; bold is what differs.", ""]
+    for name, by_door in found.items():
+        lines += [f"### {name}", "", "| pass | " + " | ".join(NAMES[door] for door in by_door) + " |", "|---|" + "---|" * len(by_door)]
         passes = list(dict.fromkeys(it["pass"] for list_ in by_door.values() for it in list_ if it["verdict"] != "not judged"))
         for which in passes:
             cells = [_cell(next((it for it in by_door[door] if it["pass"] == which), None)) for door in by_door]
             # A pass that is black in both needs no line.
-            if set(cells) != {"same"} or which in SHOWN:
+            if set(cells) - {"same", "—"} or which in SHOWN:
                 lines.append(f"| {which} | " + " | ".join(cells) + " |")
         lines.append("")
-        lines += [f"- Not through {NAMES[door]}: {why}." for door, why in facts[name]["doors"].items()]
-        for door, list_ in by_door.items():
-            for it in list_:
-                if it["verdict"] == "differs":
-                    lines.append(f"- {NAMES[door]}, {it['pass']}: {it['why']}. {'Known: ' + it['known'] + '.' if it['known'] else 'Open.'}")
-        lines.append("")
+        open_ = [f"- {NAMES[door]}, {it['pass']}: {it['why']}. Open." for door, list_ in by_door.items() for it in list_ if it["verdict"] == "differs" and not it["known"]]
+        lines += [*open_, ""] if open_ else []
     path.write_text("\n".join(lines).rstrip() + "\n")
     pictures(path.parent.parent / "pictures" / "validation.jpg", out, found)
 
@@ -100,6 +165,13 @@ def _mean(folder, who, name):
     return None if both[0] is None or both[1] is None else 0.5 * (both[0] + both[1])
 
 
+def _title(text, width, height=20):
+    """A band with these words; without them where no font is found."""
+    band = oiio.ImageBuf(oiio.ImageSpec(width, height, 3, "float"))
+    oiio.ImageBufAlgo.render_text(band, 4, height - 6, text.replace("_", " "), 15, "", (0.6, 0.6, 0.6))
+    return band.get_pixels(oiio.FLOAT).reshape(height, width, 3).astype(float)
+
+
 def pictures(path, out, found):
     """Two stages to a row, nine pictures each: three passes by Cycles, by Penumbra, and their difference."""
     strips = []
@@ -113,7 +185,8 @@ def pictures(path, out, found):
                 continue
             scale = 1.0 if which != "Combined" else 0.8 / max(np.percentile(pair[0], 98), 1e-6)
             strip += [scale * it for it in pair] + [0.2140 + 4.0 * scale * (pair[1] - pair[0])]
-        strips.append(np.concatenate(strip, axis=1))
+        strip = np.concatenate(strip, axis=1)
+        strips.append(np.concatenate([_title(name, strip.shape[1]), strip], axis=0))
     if len(strips) % 2:
         strips.append(np.full_like(strips[0], 0.02))
     sheet = np.concatenate([np.concatenate(strips[i : i + 2], axis=1) for i in range(0, len(strips), 2)], axis=0)

@@ -23,6 +23,7 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(ROOT / "addon")]
 
 import doors
+import exr
 import report
 
 OUT = ROOT / "target" / "validation"
@@ -50,9 +51,11 @@ def all_facts():
         "for name, it in stages.STAGES.items():\n"
         "    bpy.ops.wm.read_factory_settings(use_empty=True)\n"
         "    it.build()\n"
-        "    distance = bpy.context.scene.world.light_settings.distance\n"
-        "    passes = {door: {**stages.OPEN, **stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
-        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance)\n"
+        "    scene = bpy.context.scene\n"
+        "    distance = scene.world.light_settings.distance\n"
+        "    frame = scene.frame_current if scene.render.use_motion_blur else None\n"
+        "    passes = {door: {**stages.FACTORS, **stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
+        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance, frame=frame)\n"
         "print('FACTS' + json.dumps(facts))\n"
     )
     done = subprocess.run([sys.executable, "-c", code, HERE], capture_output=True, text=True)
@@ -61,25 +64,19 @@ def all_facts():
 
 
 def make_references(names, facts, wheel):
-    import engines
-
     for name in names:
         folder = OUT / "references" / name
         doors.engines(name, folder, wheel, REFERENCE_SIZE, REFERENCE_SAMPLES, "cycles")
         (REFERENCES / name).mkdir(parents=True, exist_ok=True)
-        for seed in (1, 2):
-            found = engines.parts(folder / f"cycles-{seed}.exr")
-            found = {part: it for part, it in found.items() if "Noisy" not in part and "Debug" not in part}
-            # Ids are bits, and distances reach beyond half floats.
-            exact = {part for part in found if any(word in part for word in ("Crypto", "Depth", "Index", "Position"))}
-            engines.save(REFERENCES / name / f"cycles-{seed}.exr", found, half=set(found) - exact)
+        exr.pack(*([where / f"cycles-{seed}.exr" for seed in (1, 2)] for where in (folder, REFERENCES / name)))
         print(name, flush=True)
     tell_facts(facts)
 
 
 def tell_facts(facts):
     """What the tests have to know, of the stages that have references."""
-    there = {name: it for name, it in facts.items() if (REFERENCES / name / "cycles-2.exr").exists()}
+    there = {name: {**it, "passes": {door: sorted(passes) for door, passes in it["passes"].items()}}
+             for name, it in facts.items() if (REFERENCES / name / "cycles-2.exr").exists()}
     text = json.dumps({"size": REFERENCE_SIZE, "samples": REFERENCE_SAMPLES, "stages": there}, indent=1)
     (REFERENCES / "facts.json").write_text(text + "\n")
 
@@ -102,6 +99,13 @@ def judge(name, facts, options, wheel, among):
     return found
 
 
+def closed_forms(wheel):
+    """Both engines beside what is known to be right; of the last time where there is no wheel."""
+    if wheel:
+        subprocess.run([sys.executable, HERE / "closed_forms.py", OUT, "--wheel", wheel], check=True)
+    return json.loads((OUT / "tables.json").read_text())
+
+
 def main():
     options = arguments()
     facts = all_facts()
@@ -121,7 +125,11 @@ def main():
         print(f"{name}: {time.time() - begun:.0f} s; {'differs: ' + ', '.join(wrong) if wrong else 'agrees'}", flush=True)
     report.index(OUT, found, facts)
     if not options.stages:
-        report.document(ROOT / "docs" / "validation" / "cycles.md", OUT, found, facts, options, time.time() - start, os.cpu_count())
+        tables = closed_forms(None if options.again else wheel)
+        run = OUT / "run.json"
+        if not options.again:
+            run.write_text(json.dumps({"size": options.size, "samples": options.samples, "seconds": time.time() - start, "cores": os.cpu_count()}))
+        report.document(ROOT / "docs" / "validation" / "cycles.md", OUT, found, facts, json.loads(run.read_text()), tables)
     return any(it["verdict"] == "differs" and not it["known"] for doors_ in found.values() for passes in doors_.values() for it in passes)
 
 

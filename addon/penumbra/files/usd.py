@@ -4,6 +4,7 @@ from contextlib import contextmanager
 
 import bpy
 
+from ..export.motion import Motion
 from .options import supported
 from .stamps import Stamps
 
@@ -43,7 +44,27 @@ def write(context, path, selected, animation, instancing):
     with _stamped(context, stamps):
         if "FINISHED" not in exporter(**options):
             raise RuntimeError(f"Blender's USD exporter did not write {path}")
+    if animation and context.scene.render.use_motion_blur and context.scene.render.motion_blur_shutter > 0.0:
+        stamps.warnings += _add_shutter(path, Motion(context.scene, None, None).shutter)
     return stamps.warnings
+
+
+def _add_shutter(path, times):
+    """Gives all cameras the shutter, which Blender's exporter leaves out, and has no place for among custom properties."""
+    if path.lower().endswith(".usdz"):
+        return ["the shutter of the cameras is not exported to .usdz: nothing is blurred there"]
+    try:
+        from pxr import Usd, UsdGeom
+    except ImportError:
+        return ["this Blender has no pxr, without which the shutter of the cameras is not exported: nothing is blurred there"]
+    stage = Usd.Stage.Open(path)
+    for prim in stage.Traverse():
+        if prim.IsA(UsdGeom.Camera):
+            camera = UsdGeom.Camera(prim)
+            camera.CreateShutterOpenAttr(times[0])
+            camera.CreateShutterCloseAttr(times[1])
+    stage.Save()
+    return []
 
 
 def _lost(context, instancing):
