@@ -69,8 +69,9 @@ def cycles(stage, folder, seed):
     for shadow in (True, False):
         for light in bpy.data.lights:
             light.cycles.use_multiple_importance_sampling, light.use_shadow = False, shadow
-        # Other samples than those of the picture.
-        scene.cycles.seed = seed + (100 if shadow else 200)
+        # Other samples than those of the picture, and both times the same: the mean of a ratio is too large by the
+        # variance of its lower part, which was 0.8 % of Shadow below seventy lamps with 64 samples of their own.
+        scene.cycles.seed = seed + 100
         write(folder / "shadow.exr")
         direct.append(parts(folder / "shadow.exr")["ViewLayer.Diffuse Direct"][1].astype(float))
     for light in bpy.data.lights:

@@ -72,10 +72,14 @@ def _exceptions(found, facts):
     for reason, passes in reasons.items():
         lines += [f"- {reason[0].upper() + reason[1:]}:"]
         for which, doors in passes.items():
+            # Doors at which the same stages differ share a line.
+            lists = {}
             for door, at in doors.items():
-                stages = "all stages" if len(at) == len(found) else ", ".join(name for name, _ in at) if len(at) <= 6 else f"{len(at)} stages"
-                shares = [100 * abs(share) for _, share in at if share is not None]
-                lines.append(f"    - {which}, {NAMES[door]}: {stages}" + (f"; bias up to {max(shares):.2f} %" if shares else ""))
+                lists.setdefault(tuple(name for name, _ in at), []).append(door)
+            for stages, at_doors in lists.items():
+                text = "all stages" if len(stages) == len(found) else ", ".join(stages) if len(stages) <= 6 else f"{len(stages)} stages"
+                shares = [100 * abs(share) for door in at_doors for _, share in doors[door] if share is not None]
+                lines.append(f"    - {which} ({', '.join(NAMES[door] for door in at_doors)}): {text}" + (f"; bias up to {max(shares):.2f} %" if shares else ""))
     for door in NAMES:
         missing = {}
         for name in found:

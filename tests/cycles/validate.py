@@ -54,7 +54,7 @@ def all_facts():
         "    scene = bpy.context.scene\n"
         "    distance = scene.world.light_settings.distance\n"
         "    frame = scene.frame_current if scene.render.use_motion_blur else None\n"
-        "    passes = {door: {**stages.FACTORS, **stages.NOT_CARRIED.get(door, {}), **it.passes.get('all', {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
+        "    passes = {door: {**stages.FACTORS, **it.passes.get('all', {}), **stages.NOT_CARRIED.get(door, {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
         "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance, frame=frame)\n"
         "print('FACTS' + json.dumps(facts))\n"
     )
