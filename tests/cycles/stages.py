@@ -45,6 +45,8 @@ class Stage:
     bounces: int = 4
     share: float = 1.0
     """Samples, as a share of what is asked for."""
+    by_chance: tuple = ()
+    """Passes that Cycles takes from one random sample: with another number of samples they are others."""
 
 
 def area_disk():
@@ -266,7 +268,7 @@ STAGES = {
     "many_lights": Stage(many_lights, "seventy lamps"),
     "ao_short": Stage(ao_short, "ambient occlusion within 0.4 m"),
     "ao_long": Stage(ao_long, "ambient occlusion within 1000 m"),
-    "ao_transparent": Stage(ao_transparent, "ambient occlusion through panes", passes={"all": THIN}),
+    "ao_transparent": Stage(ao_transparent, "ambient occlusion through panes", passes={"all": THIN}, by_chance=("Depth", "Position")),
     "cornell_box": Stage(cornell_box, "color that bleeds", bounces=8),
     "glossy_and_glass": Stage(glossy_and_glass, "rough metal, rough glass, plastic", lamps_alone=False, bounces=8,
                               doors={"gltf": _THIN_GLASS}, passes={"all": {"Transmission Light Direct": _FACETS}}),
@@ -276,9 +278,9 @@ STAGES = {
     "textured_and_bumpy": Stage(textured_and_bumpy, "image texture and bump"),
     "instances": Stage(scenes.instances, "instances of a mesh"),
     "depth_of_field": Stage(scenes.depth_of_field, "a lens wide open, five blades",
-                            passes={"all": {"Depth": "Cycles' is that of its first sample's random way through the lens, ours that through its middle"}}),
+                            passes={"all": {"Depth": "Cycles' is that of its first sample's random way through the lens, ours that through its middle"}}, by_chance=("Depth",)),
     "motion_blur": Stage(motion_blur, "a cube that moves and turns",
-                         doors={"gltf": "glTF has no shutter"}, passes={"all": _MOMENT}),
+                         doors={"gltf": "glTF has no shutter"}, passes={"all": _MOMENT}, by_chance=tuple(_MOMENT)),
     "hair": Stage(hair, "forty wires, thinner than a pixel", doors={"gltf": "glTF has no curves"},
                   passes={"all": {"Position": "two pixels whose center's ray grazes a wire: Cycles' first ray is 5 · 10⁻⁴ pixels beside the center"}}),
     "interior": Stage(interior, "a room lit through a window", bounces=8,
