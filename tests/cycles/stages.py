@@ -45,6 +45,8 @@ class Stage:
     bounces: int = 4
     share: float = 1.0
     """Samples, as a share of what is asked for."""
+    by_chance: tuple = ()
+    """Passes that Cycles takes from one random sample: with another number of samples they are others."""
 
 
 def area_disk():
@@ -242,10 +244,12 @@ _CHANCE = "behind a thin pane Cycles takes its one sample's random way, Penumbra
 _ODDS = "behind a thin pane Cycles counts the samples that pass it, which are more than it lets through; Penumbra is as long as the pane is clear (docs/passes.md)"
 THIN = {"Depth": _CHANCE, "Position": _CHANCE, "Object Index": _CHANCE, "Material Index": _CHANCE, "Normal": _ODDS, "UV": _ODDS,
         "Mist": "both subtract what is clear from 1 and cut below 0, so that noise behind panes is all mist: at 512 samples they agree"}
-_MOMENT = "ours is of the middle of the shutter, Cycles' of its first sample's random moment (docs/passes.md)"
+_MOMENT = dict.fromkeys(("Depth", "Position", "Object Index", "Material Index"),
+                        "ours is of the middle of the shutter, Cycles' of its first sample's random moment (docs/passes.md)")
 _FACETS = ("no direct light passes a closed ball; Cycles has some 10⁻⁶ of Combined where the smooth normal of a facet leans over its edge "
            "(none on flat facets, a thirteenth with four times as many)")
-_LEVEL = "a Specular IOR Level of 0.8 is a specular_weight of 1.6 in OpenPBR, which is read as 1"
+_LEVEL = dict.fromkeys(("Combined", "Diffuse Color", "Glossy Light Direct", "Glossy Light Indirect"),
+                       "a Specular IOR Level of 0.8 is a specular_weight of 1.6 in OpenPBR, which is read as 1")
 _THIN_GLASS = "Blender's exporter writes glass without a volume, which in glTF is a film that does not refract"
 
 STAGES = {
@@ -264,19 +268,19 @@ STAGES = {
     "many_lights": Stage(many_lights, "seventy lamps"),
     "ao_short": Stage(ao_short, "ambient occlusion within 0.4 m"),
     "ao_long": Stage(ao_long, "ambient occlusion within 1000 m"),
-    "ao_transparent": Stage(ao_transparent, "ambient occlusion through panes", passes={"all": THIN}),
+    "ao_transparent": Stage(ao_transparent, "ambient occlusion through panes", passes={"all": THIN}, by_chance=("Depth", "Position")),
     "cornell_box": Stage(cornell_box, "color that bleeds", bounces=8),
     "glossy_and_glass": Stage(glossy_and_glass, "rough metal, rough glass, plastic", lamps_alone=False, bounces=8,
                               doors={"gltf": _THIN_GLASS}, passes={"all": {"Transmission Light Direct": _FACETS}}),
     "principled_grid": Stage(principled_grid, "six materials", lamps_alone=False, bounces=8,
-                             doors={"gltf": _THIN_GLASS + ", and no tint of coats"}, passes={
-                                 "all": {"Transmission Light Direct": _FACETS}, "usd": dict.fromkeys(("Combined", "Diffuse Color", "Glossy Light Direct", "Glossy Light Indirect"), _LEVEL)}),
+                             doors={"gltf": _THIN_GLASS + ", and no tint of coats"},
+                             passes={"all": {"Transmission Light Direct": _FACETS}, "usd": _LEVEL}),
     "textured_and_bumpy": Stage(textured_and_bumpy, "image texture and bump"),
     "instances": Stage(scenes.instances, "instances of a mesh"),
     "depth_of_field": Stage(scenes.depth_of_field, "a lens wide open, five blades",
-                            passes={"all": {"Depth": "Cycles' is that of its first sample's random way through the lens, ours that through its middle"}}),
-    "motion_blur": Stage(motion_blur, "a cube that moves and turns",
-                         doors={"gltf": "glTF has no shutter"}, passes={"all": dict.fromkeys(("Depth", "Position", "Object Index", "Material Index"), _MOMENT)}),
+                            passes={"all": {"Depth": "Cycles' is that of its first sample's random way through the lens, ours that through its middle"}}, by_chance=("Depth",)),
+    "motion_blur": Stage(motion_blur, "a cube that moves and turns", doors={"gltf": "glTF has no shutter"},
+                         passes={"all": _MOMENT}, by_chance=tuple(_MOMENT)),
     "hair": Stage(hair, "forty wires, thinner than a pixel", doors={"gltf": "glTF has no curves"},
                   passes={"all": {"Position": "two pixels whose center's ray grazes a wire: Cycles' first ray is 5 · 10⁻⁴ pixels beside the center"}}),
     "interior": Stage(interior, "a room lit through a window", bounces=8,

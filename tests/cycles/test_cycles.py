@@ -78,7 +78,7 @@ def test_passes_are_those_of_cycles(stage, tmp_path, wheel):
 def test_references_are_what_cycles_gives(stage, tmp_path, wheel):
     doors.engines(stage, tmp_path, wheel, SIZE, SAMPLES, "cycles")
     passes = doors.compare(PROGRAM, REFERENCES / stage, tmp_path, "cycles", "--no-flip", "--among", AMONG)
-    assert not [it["why"] for it in passes if it["verdict"] == "differs"]
+    assert not [it["why"] for it in passes if it["verdict"] == "differs" and it["pass"] not in FACTS["stages"][stage]["by_chance"]]
     assert len(passes) > 15
 
 

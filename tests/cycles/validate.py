@@ -55,7 +55,7 @@ def all_facts():
         "    distance = scene.world.light_settings.distance\n"
         "    frame = scene.frame_current if scene.render.use_motion_blur else None\n"
         "    passes = {door: {**stages.FACTORS, **it.passes.get('all', {}), **stages.NOT_CARRIED.get(door, {}), **it.passes.get(door, {})} for door in stages.DOORS}\n"
-        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance, frame=frame)\n"
+        "    facts[name] = dict(what=it.what, doors=it.doors, passes=passes, lamps_alone=it.lamps_alone, bounces=it.bounces, ao_distance=distance, frame=frame, by_chance=it.by_chance)\n"
         "print('FACTS' + json.dumps(facts))\n"
     )
     done = subprocess.run([sys.executable, "-c", code, HERE], capture_output=True, text=True)
