@@ -1,6 +1,7 @@
 """Function nodes and images beside Cycles, pixel by pixel."""
 
 import numpy as np
+import pytest
 
 from test_addon import read
 
