@@ -120,6 +120,27 @@ fn passes_are_named_as_what_calls_for_their_rays() {
     assert!(row(&plan(&desc, &errors), "error estimate").because.contains("--error"));
 }
 
+/// What is left out for passes that don't ask for it is no part of those.
+#[test]
+fn a_pass_alone_has_the_bits_that_it_has_beside_others() {
+    for (effect, add, _) in CASES {
+        let mut builder = plain();
+        add(&mut builder);
+        let layers = |passes: &str| {
+            let settings = settings(passes, 4);
+            let view = View { camera: None, size: Some(SIZE) };
+            let prepared = prepare(builder.desc.clone(), &view, &settings).unwrap();
+            render(&prepared.scene, &settings, &()).unwrap().film.develop().layers
+        };
+        let together = layers("combined,ao,mist,normal,emission,environment,diffuse_color");
+        for alone in ["ao", "mist", "normal", "emission", "environment", "diffuse_color"] {
+            let alone = layers(alone).remove(0);
+            let beside = together.iter().find(|layer| layer.name == alone.name).unwrap();
+            assert!(alone.data == beside.data, "{effect}: {}", alone.name);
+        }
+    }
+}
+
 #[test]
 fn what_can_not_be_seen_calls_for_nothing() {
     let settings = settings("combined", 2);

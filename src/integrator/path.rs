@@ -140,7 +140,9 @@ pub fn trace(
                 if scene.effects.mist && path.scatterings == 0 && in_front.is_none() {
                     add_mist(scene, it, path.beta.mean(), coverage.alpha(), &mut sample);
                 }
-                add_emission(scene, path, it, coverage.opacity, &mut sample);
+                if scene.effects.radiance {
+                    add_emission(scene, path, it, coverage.opacity, &mut sample);
+                }
                 if path.look.is_some() {
                     features::look(scene, path, it, coverage, settings, &mut sample);
                 }
@@ -167,13 +169,10 @@ pub fn trace(
         }
         let frame = scene.shading_frame(&it);
         let mut bsdf = Bsdf::none();
-        scene.fill_bsdf(
-            &mut bsdf,
-            &it,
-            &frame,
-            path.share,
-            Blur::of_path(settings, path.min_pdf, path.mask == mask::DIFFUSE),
-        );
+        if scene.effects.scattering {
+            let blur = Blur::of_path(settings, path.min_pdf, path.mask == mask::DIFFUSE);
+            scene.fill_bsdf(&mut bsdf, &it, &frame, path.share, blur);
+        }
         let around;
         let media = if scene.effects.absorption {
             around = path.media;

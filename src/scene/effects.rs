@@ -21,6 +21,10 @@ pub struct Effects {
     pub light: bool,
     /// Light after more than one scattering.
     pub indirect: bool,
+    /// What surfaces and the background emit.
+    pub radiance: bool,
+    /// How surfaces scatter.
+    pub scattering: bool,
     /// Some surface lets light pass unscattered: cut-outs and blends.
     pub cutouts: bool,
     /// Some surface is a hole in the picture.
@@ -83,12 +87,15 @@ impl Effects {
         // A scene without lights gets a dome.
         let in_background = scene.lights.iter().all(|light| light.kind.is_portal())
             || scene.lights.iter().any(|light| light.kind.is_in_background() && shines(light));
+        let catchers = scene.instances.iter().any(|instance| instance.catcher);
+        let forced = Self::forced(passes);
         Self {
             motion_blur: Shutter::of(camera, settings).is_some_and(|shutter| shutter.shows_motion(scene, camera)),
-            indirect: passes.needs_indirect() && settings.max_bounces > 0,
+            indirect: forced.indirect && settings.max_bounces > 0,
             cutouts: any(&|m| lets_pass(m) || !is_opaque(scene, m)),
             holdouts: any(&|m| m.holdout) || scene.instances.iter().any(|instance| instance.holdout),
-            catchers: scene.instances.iter().any(|instance| instance.catcher),
+            catchers,
+            scattering: catchers || forced.scattering,
             light_path: any(&asks_path),
             absorption: any(&|m| absorbs(scene, m)),
             lamps,
@@ -98,7 +105,7 @@ impl Effects {
             own_shadows: scene.lights.iter().any(|light| shines(light) && has_own_shadow(&light.links))
                 || (emissive && scene.instances.iter().any(|instance| has_own_shadow(&instance.links))),
             occlusion_maps: settings.occlusion_maps && any(&|m| m.occlusion.is_some_and(|o| o.factor != 0.0)),
-            ..Self::forced(passes)
+            ..forced
         }
     }
 
@@ -108,6 +115,8 @@ impl Effects {
             ("motion blur", self.motion_blur),
             ("light", self.light),
             ("indirect light", self.indirect),
+            ("radiance", self.radiance),
+            ("scattering", self.scattering),
             ("cut-outs", self.cutouts),
             ("holdouts", self.holdouts),
             ("shadow catchers", self.catchers),
@@ -151,6 +160,8 @@ impl Effects {
             motion_blur: true,
             light: passes.needs_light(),
             indirect: passes.needs_indirect(),
+            radiance: passes.needs_light() || passes.needs(Quantity::Emission) || passes.needs(Quantity::Environment),
+            scattering: passes.needs_light() || passes.needs_color() || passes.needs(Quantity::GroupUnshadowed),
             cutouts: true,
             holdouts: true,
             catchers: true,

@@ -45,6 +45,9 @@ pub(super) fn add_background(scene: &Scene, path: &Path<'_>, sample: &mut PixelS
         // What absorbs covers as much as it takes.
         sample.alpha = (path.alpha - path.beta.mean()).max(0.0);
     }
+    if !scene.effects.radiance {
+        return;
+    }
     for (i, light, le) in scene.background(path.ray.d) {
         match &path.last {
             None if light.rules.seen.camera => {
