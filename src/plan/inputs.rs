@@ -111,20 +111,18 @@ fn bumps(facts: &Facts<'_>) -> Row {
 fn occlusion(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.occlusion_maps;
     let list = facts.materials(|m| m.occlusion.is_some());
-    let because = if on { of("material", &list) } else { String::new() };
     let otherwise = match (list.is_empty(), facts.settings.occlusion_maps) {
         (true, _) => "no material has one",
         (_, false) => "--occlusion-maps off",
         _ => "their strength is 0",
     };
-    Row::new(SUBJECT, "baked occlusion", because, otherwise).is(on, facts.forced()).probe("effect occlusion maps")
+    facts.flagged(SUBJECT, "baked occlusion", on, of("material", &list), otherwise).probe("effect occlusion maps")
 }
 
 fn paths(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.light_path;
     let list = with_op(facts, |op| matches!(op, Op::Leaf(Leaf::Path(_))));
-    let because = if on { of("material", &list) } else { String::new() };
-    Row::new(SUBJECT, "questions of the light path", because, "no graph asks which ray it is")
-        .is(on, facts.forced())
+    facts
+        .flagged(SUBJECT, "questions of the light path", on, of("material", &list), "no graph asks which ray it is")
         .adds("the path's history is kept")
 }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::Facts;
 use super::row::{Row, names, of};
-use crate::desc::{DecayDesc, LightDesc, LightKind, ShadowDesc};
+use crate::desc::{DecayDesc, LightDesc, LightKind};
+use crate::scene::{has_own_shadow, shines};
 use crate::settings::{Integrator, LightSelection};
 
 const SUBJECT: &str = "light";
@@ -46,11 +47,6 @@ pub(super) fn rows(facts: &Facts<'_>) -> Vec<Row> {
     rows
 }
 
-/// True for a light that gives any.
-fn shines(light: &LightDesc) -> bool {
-    light.kind.color().iter().any(|&c| c != 0.0)
-}
-
 fn of_kind(facts: &Facts<'_>, &(effect, is): &Kind) -> Row {
     let all: Vec<&LightDesc> = facts.desc.lights.iter().filter(|light| is(light)).collect();
     let (lit, dark): (Vec<&LightDesc>, Vec<&LightDesc>) = all.into_iter().partition(|light| shines(light));
@@ -78,9 +74,8 @@ fn portals(facts: &Facts<'_>) -> Row {
 fn emissive(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.emissive;
     let list: Vec<_> = facts.materials(|m| m.unlit || m.emission_strength != 0.0 && m.emission.factor != [0.0; 3]);
-    let because = if on { of("material", &list) } else { String::new() };
-    Row::new(SUBJECT, "objects that emit", because, "no material emits")
-        .is(on, facts.forced())
+    facts
+        .flagged(SUBJECT, "objects that emit", on, of("material", &list), "no material emits")
         .adds("their shapes as lights, light at hits")
 }
 
@@ -98,15 +93,17 @@ fn tree(facts: &Facts<'_>) -> Row {
 
 fn own_shadows(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.own_shadows;
-    let has = |links: &crate::desc::LightLinks| {
-        !links.cast_shadow || links.blockers.is_some() || links.shadow != ShadowDesc::default()
-    };
-    let lamps = facts.desc.lights.iter().filter(|l| has(&l.links)).map(|l| l.name.clone());
-    let objects = facts.desc.instances.iter().filter(|i| has(&i.links)).map(|i| i.name.clone());
+    let lamps = facts.desc.lights.iter().filter(|l| has_own_shadow(&l.links)).map(|l| l.name.clone());
+    let objects = facts.desc.instances.iter().filter(|i| has_own_shadow(&i.links)).map(|i| i.name.clone());
     let list: Vec<_> = lamps.chain(objects).collect();
-    let because = if on { of("shadow of", &list) } else { String::new() };
-    Row::new(SUBJECT, "own shadows", because, "all shadows are of everything, black, and end nowhere")
-        .is(on, facts.forced())
+    facts
+        .flagged(
+            SUBJECT,
+            "own shadows",
+            on,
+            of("shadow of", &list),
+            "all shadows are of everything, black, and end nowhere",
+        )
         .adds("a look at the light's rules for each shadow ray")
         .probe("effect own shadows")
 }

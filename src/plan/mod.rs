@@ -71,6 +71,18 @@ impl Facts<'_> {
         self.settings.effects == EffectsMode::All
     }
 
+    /// A row for what a flag of the render says, with the reasons that were found for it.
+    fn flagged(
+        &self,
+        subject: &'static str,
+        effect: &'static str,
+        on: bool,
+        reasons: String,
+        otherwise: impl Into<String>,
+    ) -> Row {
+        Row::new(subject, effect, if on { reasons } else { String::new() }, otherwise).is(on, self.forced())
+    }
+
     /// Names of the materials that `test` holds for.
     fn materials(&self, test: impl Fn(&MaterialDesc) -> bool) -> Vec<Arc<str>> {
         self.materials.iter().filter(|m| test(m)).map(|m| m.name.clone()).collect()

@@ -37,9 +37,8 @@ fn motion_blur(facts: &Facts<'_>) -> Row {
         }
         () => format!("{} would not be seen to move", names(&moving)),
     };
-    let because = if on { of("moving:", &moving) } else { String::new() };
-    Row::new(SUBJECT, "motion blur", because, otherwise)
-        .is(on, facts.forced())
+    facts
+        .flagged(SUBJECT, "motion blur", on, of("moving:", &moving), otherwise)
         .adds("a time for each sample, boxes that span the shutter")
         .probe("effect motion blur")
 }

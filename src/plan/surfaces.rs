@@ -23,13 +23,12 @@ pub(super) fn rows(facts: &Facts<'_>) -> Vec<Row> {
 fn cutouts(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.cutouts;
     let authored = facts.materials(|m| m.alpha_mode != AlphaMode::Opaque || m.transparency.factor != [0.0; 3]);
-    let because = if on { of("material", &authored) } else { String::new() };
     let otherwise = match authored.is_empty() {
         true => "every surface is opaque".to_owned(),
         false => format!("{} is opaque everywhere", of("material", &authored)),
     };
-    Row::new(SUBJECT, "cut-outs and transparency", because, otherwise)
-        .is(on, facts.forced())
+    facts
+        .flagged(SUBJECT, "cut-outs and transparency", on, of("material", &authored), otherwise)
         .adds(format!("shadow rays stop at each such surface; up to {} are passed", facts.settings.transparent_bounces))
         .probe("effect cut-outs")
 }
@@ -37,9 +36,14 @@ fn cutouts(facts: &Facts<'_>) -> Row {
 fn absorption(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.absorption;
     let list = facts.materials(|m| m.volume.is_some_and(|v| v.attenuation_color.iter().any(|&c| c < 1.0)));
-    let because = if on { of("material", &list) } else { String::new() };
-    Row::new(SUBJECT, "absorption inside", because, "light that gets into surfaces is not absorbed there")
-        .is(on, facts.forced())
+    facts
+        .flagged(
+            SUBJECT,
+            "absorption inside",
+            on,
+            of("material", &list),
+            "light that gets into surfaces is not absorbed there",
+        )
         .adds("the media that a ray is in are kept")
         .probe("effect absorption")
 }
@@ -48,17 +52,15 @@ fn holdouts(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.holdouts;
     let mut list = facts.materials(|m| m.holdout);
     list.extend(facts.desc.instances.iter().filter(|instance| instance.holdout).map(|instance| instance.name.clone()));
-    let because = if on { of("hole:", &list) } else { String::new() };
-    Row::new(SUBJECT, "holdouts", because, "nothing is a hole in the picture").is(on, facts.forced())
+    facts.flagged(SUBJECT, "holdouts", on, of("hole:", &list), "nothing is a hole in the picture")
 }
 
 fn catchers(facts: &Facts<'_>) -> Row {
     let on = facts.scene.effects.catchers;
     let objects = facts.desc.instances.iter().filter(|instance| instance.catcher);
     let list: Vec<_> = objects.map(|instance| instance.name.clone()).collect();
-    let because = if on { of("object", &list) } else { String::new() };
-    Row::new(SUBJECT, "shadow catchers", because, "no object catches shadows")
-        .is(on, facts.forced())
+    facts
+        .flagged(SUBJECT, "shadow catchers", on, of("object", &list), "no object catches shadows")
         .adds("light with and without the scene")
         .probe("effect shadow catchers")
 }

@@ -196,11 +196,12 @@ pub(super) fn is_met(scene: &SceneDesc, instance: &InstanceDesc) -> bool {
 }
 
 /// True for a light that gives any.
-fn shines(light: &LightDesc) -> bool {
+pub(crate) fn shines(light: &LightDesc) -> bool {
     light.kind.color().iter().any(|&c| c != 0.0)
 }
 
-fn has_own_shadow(links: &LightLinks) -> bool {
+/// True for a light whose shadow is not that of every object, black and without end.
+pub(crate) fn has_own_shadow(links: &LightLinks) -> bool {
     !links.cast_shadow || links.blockers.is_some() || links.shadow != ShadowDesc::default()
 }
 

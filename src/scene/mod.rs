@@ -26,6 +26,7 @@ mod vectors;
 
 pub use blur::Blur;
 pub use effects::Effects;
+pub(crate) use effects::{has_own_shadow, shines};
 pub use ids::Ids;
 pub use inside::Inside;
 pub use instance::{Instance, mask};
