@@ -253,6 +253,31 @@ fn millions_of_rays_stay_inside() {
     }
 }
 
+/// At its vertices and edges, from within: the numbers of docs/hard-cases.md. `PENUMBRA_RAYS` says how many.
+#[test]
+#[ignore = "minutes: cargo test --test bvh -- --ignored --nocapture a_hundred_million"]
+fn a_hundred_million_rays_at_vertices_and_edges_stay_inside() {
+    let rays: u64 = std::env::var("PENUMBRA_RAYS").ok().map_or(100_000_000, |text| text.parse().unwrap());
+    let mut mesh = Mesh::sphere(100, 0.15);
+    mesh.points.iter_mut().for_each(|p| *p = *p * Vec3::new(1.0, 30.0, 0.1) + Vec3::new(0.1, 0.0, -1.0));
+    let place = Instance { blas: 0, object_to_render: Affine3A::IDENTITY, motion: None, mask: 1 };
+    let bvh = Bvh::build(vec![mesh.blas()], vec![place]);
+    let mut rng = Rng(4);
+    let mut escaped = 0_u64;
+    for _ in 0..rays {
+        let corners = mesh.corners(rng.below(mesh.triangles.len()));
+        let target = match rng.below(3) {
+            0 => corners[0],
+            1 => 0.5 * (corners[0] + corners[1]),
+            _ => corners[0].lerp(corners[1], rng.f()),
+        };
+        let o = Vec3::new(0.1, 0.0, -1.0) + rng.vec() * Vec3::new(0.3, 9.0, 0.03);
+        escaped += u64::from(bvh.closest_hit(&Ray::new(o, target - o), 1).is_none());
+    }
+    println!("{rays} rays at vertices and edges, {escaped} escaped");
+    assert_eq!(escaped, 0);
+}
+
 #[test]
 fn every_edge_of_a_flat_grid_is_closed() {
     // Axis-aligned and flat: boxes without thickness, rays along axes and diagonals, through vertices.

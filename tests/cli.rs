@@ -522,3 +522,25 @@ fn a_stage_names_its_own_picture() {
     let scene = folder.write("tri.glb", triangle().bytes());
     assert_eq!(run(&["render", text(&scene)]).status.code(), Some(2));
 }
+
+/// What overflows reaches no pass, is counted, and can be looked at again.
+#[test]
+fn a_sample_that_is_no_number_is_told_and_can_be_replayed() {
+    let mut glb = triangle();
+    glb.json["cameras"][0]["perspective"]["yfov"] = json!(1e-7);
+    let penumbra = json!({"light": {"type": "point", "intensity": 1e30}});
+    glb.push("nodes", json!({"name": "Key", "translation": [0.3, 0.3, 1e-6], "extras": {"penumbra": penumbra}}));
+    let folder = Folder::new();
+    let scene = folder.write("bright.glb", glb.bytes());
+    let out = folder.path("out.exr");
+    let args = ["render", text(&scene), "--size", "1x1", "--spp", "4", "--progress", "none"];
+    let output = self::penumbra(&[&args[..], &["--filter", "box", "-o", text(&out)]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(exr::read(&out).unwrap().layers[0].data.iter().all(|v| v.is_finite()));
+    let told = stderr(&output);
+    let id = told.split_once("samples were not finite and left out; the first: --debug-sample ").expect(&told).1;
+    let id = id.split_whitespace().next().unwrap();
+    let output = self::penumbra(&[&args[..], &["--filter", "box", "--debug-sample", id]].concat());
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(told.contains("inf") || told.contains("NaN"), "{told}");
+}

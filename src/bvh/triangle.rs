@@ -12,8 +12,8 @@ use super::node::{BLOCK, Block};
 use super::ray::RaySetup;
 use super::simd::Lanes;
 
-/// Rounding of the distance of a point from the plane of a triangle, in units of the largest
-/// coordinate of a vertex relative to the point: a subtraction, a cross and a dot product.
+/// Rounding of the distance of a point from the plane of a triangle, in units of a coordinate of a
+/// vertex relative to the point: a subtraction, a cross and a dot product.
 const PLANE_ROUNDING: f32 = 3.0 * f32::EPSILON;
 
 /// The nearest hit so far. `primitive` is [`Best::NONE`] as long as there is none, and `t` the end
@@ -137,7 +137,16 @@ unsafe fn distance<F: Lanes<BLOCK>>(vertices: [[F; 3]; 3], origin: [F; 3], ray: 
         let size = abs(n[0]).add(abs(n[1])).add(abs(n[2]));
         let limit = reach.mul(size).mul(F::splat(PLANE_ROUNDING));
         // A triangle so small that its normal underflows is no plane to start on.
-        (t, abs(height).le(limit) & !size.eq(F::splat(0.0)))
+        let mut on_plane = abs(height).le(limit) & !size.eq(F::splat(0.0));
+        if on_plane != 0 {
+            // The largest coordinate is far too much for a wall along the axes, kilometres wide, that begins a hair
+            // aside: there no product is large that does not cancel exactly.
+            let products = |i: usize, j: usize| abs(e[i].mul(f[j])).add(abs(e[j].mul(f[i])));
+            let reach = [0, 1, 2].map(|i| abs(a[i]).add(abs(origin[i])));
+            let sum = reach[0].mul(products(1, 2)).add(reach[1].mul(products(2, 0))).add(reach[2].mul(products(0, 1)));
+            on_plane &= abs(height).le(sum.mul(F::splat(PLANE_ROUNDING)));
+        }
+        (t, on_plane)
     }
 }
 

@@ -7,7 +7,7 @@ use std::f32::consts::{PI, TAU};
 pub struct Lens {
     /// Of the circle around the aperture.
     pub radius: f32,
-    /// Distance along the axis at which the picture is sharp.
+    /// Distance along the axis at which the picture is sharp; may be infinite.
     pub focus: f32,
     /// Corners of the aperture; fewer than 3 make it round.
     pub blades: u32,

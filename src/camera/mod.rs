@@ -108,12 +108,12 @@ impl Camera {
         let [right, up] = lens.sample(u());
         let d = straight.ray.d;
         let per_t = d.dot(view.forward);
-        // Where the straight ray leaves the plane of the lens, and where it is sharp.
+        let aside = view.right * right + view.up * up;
+        // Where the straight ray leaves the plane of the lens, and from there to where it is sharp, over that distance:
+        // it may be infinite.
         let start = straight.ray.o - d * (view.clip_near / per_t);
-        let sharp = start + d * (lens.focus / per_t);
-        let o = start + view.right * right + view.up * up;
-        let through = (sharp - o).normalize();
-        CameraRay { ray: view.clipped(o, through), ..straight }
+        let through = (d / per_t - aside / lens.focus).normalize();
+        CameraRay { ray: view.clipped(start + aside, through), ..straight }
     }
 
     /// What the depth pass holds of `p`: its distance along the axis, or from a panorama.

@@ -45,7 +45,7 @@ pub struct CameraDesc {
 pub struct LensDesc {
     /// Radius of the aperture, metres.
     pub aperture_radius: f64,
-    /// Distance along the axis at which the picture is sharp, metres.
+    /// Distance along the axis at which the picture is sharp, metres; may be infinite.
     pub focus_distance: f64,
     /// Blades of the aperture; fewer than 3 make it round.
     pub blades: u32,

@@ -3,7 +3,7 @@
 use super::material::NormalInput;
 use super::{Instance, PathState, RayCone, Scene};
 use crate::bvh::Hit;
-use crate::math::{DVec3, Frame, Ray, Vec3, sqr};
+use crate::math::{DVec3, Frame, Ray, Vec3, gamma, sqr};
 use crate::shape::{Shape, SurfaceGeometry};
 
 /// Geometry of a hit in render space. Materials are evaluated from it, as far as they are needed.
@@ -45,8 +45,21 @@ impl Scene {
         let instance = &self.instances[hit.instance as usize];
         let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d, ray.time);
         let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
-        Interaction { instance: hit.instance, footprint, ..it }
+        Interaction { instance: hit.instance, footprint, p: along(ray, hit.t, &it), ..it }
     }
+}
+
+/// `it.p`, or where it was found on a primitive much larger than the way to it: the ray's own point, moved along the
+/// normal to where `it.p` lies. Barycentrics place a point to within a share of the primitive's size, which on a floor of
+/// 200 km is more than a speck that stands on it.
+fn along(ray: &Ray, t: f32, it: &Interaction) -> Vec3 {
+    let way = ray.d * t;
+    let rounding = (ray.o.abs() + way.abs()).max_element() * gamma(3);
+    if it.p_err.max_element() <= 16.0 * rounding {
+        return it.p;
+    }
+    let aside = ray.o + way - it.p;
+    it.p + (aside - it.ng * aside.dot(it.ng))
 }
 
 impl Interaction {

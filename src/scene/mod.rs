@@ -45,7 +45,7 @@ use std::sync::Arc;
 use aovs::BackgroundAovs;
 use asked::Asked;
 
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Isa};
 use crate::camera::{Camera, CameraMotion, CameraRay, Exposure};
 use crate::film::PassSet;
 use crate::light::LightSet;
@@ -108,6 +108,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The same scene, its hits found by the code for `isa`; `None` where this machine can't run it.
+    pub fn with_isa(self, isa: Isa) -> Option<Self> {
+        let bvh = self.bvh.with_isa(isa)?;
+        let absorbing = match self.absorbing {
+            Some((bvh, instances)) => Some((bvh.with_isa(isa)?, instances)),
+            None => None,
+        };
+        Some(Self { bvh, absorbing, ..self })
+    }
+
     /// The placed shape `i`, an index that a hit gives.
     pub fn instance(&self, i: u32) -> &Instance {
         &self.instances[i as usize]

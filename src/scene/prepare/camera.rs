@@ -43,6 +43,14 @@ pub fn choose(desc: &SceneDesc, view: &View, warnings: &mut Warnings) -> Result<
     });
     let mut camera = usable(camera, desc, size, warnings);
     desc.render.framing.off.apply(&mut camera);
+    if let Some(lens) = camera.lens
+        && lens.aperture_radius > 0.0
+        && usable_lens(&lens).is_none()
+    {
+        let LensDesc { aperture_radius, focus_distance, .. } = lens;
+        let what = format!("a lens of radius {aperture_radius} m in focus at {focus_distance} m: taken for a pinhole");
+        warnings.push(&camera.place, what);
+    }
     Ok((camera, size))
 }
 
@@ -150,7 +158,7 @@ fn projection(desc: &CameraDesc, view: camera::View, size: [f32; 2], aspect: f64
 /// A lens; `None` for one that blurs nothing.
 fn usable_lens(desc: &LensDesc) -> Option<Lens> {
     let positive = |x: f64| x.is_finite() && x > 0.0;
-    (positive(desc.aperture_radius) && positive(desc.focus_distance)).then(|| Lens {
+    (positive(desc.aperture_radius) && desc.focus_distance > 0.0).then(|| Lens {
         radius: desc.aperture_radius as f32,
         focus: desc.focus_distance as f32,
         blades: desc.blades,
