@@ -118,9 +118,7 @@ def wall():
         truth = 1.0 - polygon(corners, (0.0, -away, 0.0))
         found = measure(["Ambient Occlusion"], 16384)
         rows.append([f"{away:g} m, faces of {size:g} m", truth, *(found[engine][0] for engine in ENGINES)])
-    return ("Ambient occlusion beside a wall", "distance", "A wall of 1 m, no limit of distance; right is one less the wall's form factor, one half at its foot. "
-            "A face whose plane is nearer than 3.6 · 10⁻⁷ of the distance to its corner counts as one that the ray begins on in Penumbra, which is "
-            "what makes faces in one place right, and costs the last row: 0.1 mm from a wall of 2 km.", rows)
+    return ("Ambient occlusion beside a wall", "distance", "A wall of 1 m, no limit of distance; right is one less the wall's form factor, one half at its foot.", rows)
 
 
 def scattered(cos, alpha, ior, steps=512):
