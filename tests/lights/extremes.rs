@@ -50,7 +50,7 @@ impl Stage {
 /// Every distance at one scale, every scale at three distances.
 fn hold(case: impl Fn(&Stage) -> (penumbra::light::AnyEmitter, f64)) {
     let all = (-4..=6).map(|k| (10.0_f64.powi(k), 1.0));
-    let scaled = [1e-4, 1e-2, 1e2, 1e5].into_iter().flat_map(|scale| [1e-4, 1.0, 1e6].map(|d| (d, scale)));
+    let scaled = [1e-4, 1e5].into_iter().flat_map(|scale| [1e-4, 1.0, 1e6].map(|d| (d, scale)));
     let mut cases = Vec::new();
     for (d, scale) in all.chain(scaled) {
         // Seen along an axis of the world, and along none.
