@@ -79,7 +79,7 @@ pub(super) fn is_plain(ray: &Ray) -> bool {
 
 /// The ray with its direction brought near length 1 by a power of two, which changes no digit of
 /// any product, and that power: `t` of the result times the power is `t` of the ray. `None` for a
-/// ray that can hit nothing: not finite, without direction, or without length.
+/// ray that can hit nothing: not finite, without direction, without length, or so far away that it stays no plain one.
 #[cold]
 #[inline(never)]
 pub(super) fn rescaled(ray: &Ray) -> Option<(Ray, f32)> {
@@ -93,7 +93,8 @@ pub(super) fn rescaled(ray: &Ray) -> Option<(Ray, f32)> {
     let scale = |v: Vec3| v * 2.0_f32.powi(-a) * 2.0_f32.powi(-b);
     let t_max = ray.t_max * 2.0_f32.powi(a) * 2.0_f32.powi(b);
     let power = f64::powi(2.0, -exponent) as f32;
-    Some((Ray { o: ray.o, d: scale(ray.d), t_max, time: ray.time }, power))
+    let scaled = Ray { o: ray.o, d: scale(ray.d), t_max, time: ray.time };
+    is_plain(&scaled).then_some((scaled, power))
 }
 
 #[cfg(test)]
@@ -124,6 +125,9 @@ mod tests {
                 assert_eq!(f64::from(scaled.t_max), 3.0 / f64::from(power), "{length}");
             }
         }
+        // The sum of its coordinates is no number, and its length is none either.
+        assert!(rescaled(&Ray::new(Vec3::splat(2e38), Vec3::X)).is_none());
+        assert!(rescaled(&Ray { t_max: 1e-44, ..Ray::new(Vec3::ZERO, Vec3::X * 1e-10) }).is_none());
         for bad in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
             let (no_direction, nowhere) = (Ray::new(Vec3::ZERO, bad), Ray::new(bad, Vec3::X));
             assert!(!is_plain(&no_direction) && rescaled(&no_direction).is_none());

@@ -88,7 +88,17 @@ unsafe fn candidates<F: Lanes<BLOCK>>(block: &Block, ray: &RaySetup) -> Option<C
         let unsure = inside & (low.eq(zero) | high.eq(zero));
         let det = u.add(v).add(w);
         let rcp = F::splat(1.0).div(det);
-        let (t, on_plane) = distance([vertex(0), vertex(1), vertex(2)], origin, ray);
+        let vertices = [vertex(0), vertex(1), vertex(2)];
+        let (mut t, mut on_plane) = distance(vertices, origin, ray);
+        if on_plane & inside != 0 {
+            let (mut corners, mut times) = ([[[0.0; BLOCK]; 3]; 3], [0.0; BLOCK]);
+            for (lanes, v) in corners.iter_mut().flatten().zip(vertices.iter().flatten()) {
+                v.store(lanes);
+            }
+            t.store(&mut times);
+            on_plane = begins_on(on_plane, inside, &corners, ray, &mut times);
+            t = F::load(&times);
+        }
         let mut found = Candidates { inside: 0, t, u: v.mul(rcp), v: w.mul(rcp) };
         inside &= !det.eq(zero);
         if unsure != 0 {
@@ -137,17 +147,47 @@ unsafe fn distance<F: Lanes<BLOCK>>(vertices: [[F; 3]; 3], origin: [F; 3], ray: 
         let size = abs(n[0]).add(abs(n[1])).add(abs(n[2]));
         let limit = reach.mul(size).mul(F::splat(PLANE_ROUNDING));
         // A triangle so small that its normal underflows is no plane to start on.
-        let mut on_plane = abs(height).le(limit) & !size.eq(F::splat(0.0));
-        if on_plane != 0 {
-            // The largest coordinate is far too much for a wall along the axes, kilometres wide, that begins a hair
-            // aside: there no product is large that does not cancel exactly.
-            let products = |i: usize, j: usize| abs(e[i].mul(f[j])).add(abs(e[j].mul(f[i])));
-            let reach = [0, 1, 2].map(|i| abs(a[i]).add(abs(origin[i])));
-            let sum = reach[0].mul(products(1, 2)).add(reach[1].mul(products(2, 0))).add(reach[2].mul(products(0, 1)));
-            on_plane &= abs(height).le(sum.mul(F::splat(PLANE_ROUNDING)));
-        }
-        (t, on_plane)
+        (t, abs(height).le(limit) & !size.eq(F::splat(0.0)))
     }
+}
+
+/// Which of the lanes of `near`, whose planes seem to hold the ray's origin, are triangles that the ray begins on; of
+/// those among `inside` that lie ahead of it `t` is made one of theirs.
+///
+/// [`distance`] goes by the largest coordinate, which is far too much for a wall along the axes, kilometres wide, that
+/// begins a hair aside: there no product is large that does not cancel exactly. And a triangle that is seen along its
+/// plane is ahead: the ray passes it by the signs of its edges and would leak without it, though where is all but
+/// undefined.
+#[cold]
+#[inline(never)]
+fn begins_on(near: u32, inside: u32, corners: &[[[f32; BLOCK]; 3]; 3], ray: &RaySetup, t: &mut [f32; BLOCK]) -> u32 {
+    let o = ray.permuted_o.map(f64::from);
+    let mut on = near & !inside;
+    for i in (0..BLOCK).filter(|i| (near & inside) >> i & 1 != 0) {
+        let [a, b, c] = corners.map(|corner| [0, 1, 2].map(|k| f64::from(corner[k][i])));
+        let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let (e, f, a) = (sub(b, a), sub(c, a), sub(a, o));
+        let (mut height, mut rounding, mut reach) = (0.0, 0.0, 0.0_f64);
+        for k in 0..3 {
+            let (p, q) = (e[(k + 1) % 3] * f[(k + 2) % 3], e[(k + 2) % 3] * f[(k + 1) % 3]);
+            height += a[k] * (p - q);
+            rounding += (a[k].abs() + o[k].abs()) * (p.abs() + q.abs());
+            reach = reach.max(a[k].abs());
+        }
+        if height.abs() > f64::from(PLANE_ROUNDING) * rounding {
+            continue;
+        }
+        let per_t = f64::from(ray.shear[2]);
+        let depths = [a[2], b[2] - o[2], c[2] - o[2]].map(|depth| depth * per_t);
+        let (first, last) = (depths[0].min(depths[1]).min(depths[2]), depths[0].max(depths[1]).max(depths[2]));
+        if first > f64::from(PLANE_ROUNDING) * reach * per_t.abs() {
+            // NaN becomes the first.
+            t[i] = t[i].max(first as f32).min(last as f32);
+        } else {
+            on |= 1 << i;
+        }
+    }
+    on
 }
 
 /// Decides the lanes of `unsure` by exact products and returns the new `inside`.
