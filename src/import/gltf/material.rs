@@ -6,7 +6,7 @@ use super::json::{Material, MetallicRoughness, SpecularGlossiness, TextureInfo};
 use super::texture::Lookup;
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, ColorSpace, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
+    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 use crate::error::{Place, Warnings};
 
@@ -114,6 +114,17 @@ impl Converter<'_, '_> {
         if let Some(t) = &x.transmission {
             let texture = t.transmission_texture.as_ref();
             material.transmission = self.scalar(t.transmission_factor, texture, Channel::R, "transmission");
+        }
+        if let Some(t) = &x.diffuse_transmission {
+            let [share, color] = [&t.diffuse_transmission_texture, &t.diffuse_transmission_color_texture];
+            material.translucent = Some(TranslucentDesc {
+                weight: self.scalar(t.diffuse_transmission_factor, share.as_ref(), Channel::A, "diffuse transmission"),
+                color: self.unit_color(
+                    t.diffuse_transmission_color_factor,
+                    color.as_ref(),
+                    "diffuse transmission color",
+                ),
+            });
         }
         if let Some(volume) = &x.volume {
             let thickness = volume.thickness_texture.as_ref();
