@@ -36,7 +36,7 @@ const WHITE: Surface = Surface {
     film: None,
 };
 const COAT: Coat = Coat { weight: 1.0, roughness: 0.1, ior: 1.5, tint: Rgb::WHITE, frame: None };
-const FILM: ThinFilm = ThinFilm { thickness: 400.0, ior: 1.8, weight: 1.0 };
+const FILM: ThinFilm = ThinFilm { thickness: 400.0, ior: 1.8, weight: 1.0, on_metal: true };
 const FACETS: Microfacets = Microfacets { roughness: 0.3, stretched: None, multiscatter: true };
 /// Turned by 30 degrees.
 const TURNED: Frame = Frame { s: Vec3::new(0.866_025_4, 0.5, 0.0), t: Vec3::new(-0.5, 0.866_025_4, 0.0), n: Vec3::Z };
@@ -477,7 +477,7 @@ fn films_gain_next_to_nothing() {
     let films = [1.2, 2.4].into_iter().flat_map(|ior| [150.0, 300.0, 1000.0].map(|thickness| (ior, thickness)));
     for (ior, thickness) in films {
         for (roughness, degrees) in [0.25, 0.5, 1.0].into_iter().flat_map(|r| [0.0, 70.0, 88.0].map(|d| (r, d))) {
-            let film = Some(ThinFilm { thickness, ior, weight: 1.0 });
+            let film = Some(ThinFilm { thickness, ior, weight: 1.0, on_metal: true });
             for (base, most) in [(METAL, 1.002), (GLASS, 1.015)] {
                 for entering in [true, false] {
                     let surface = Surface { film, roughness, ..base };

@@ -53,6 +53,8 @@ pub struct IridescenceDesc {
     pub thickness_max: f64,
     /// Where between the two.
     pub thickness: ScalarInput,
+    /// False where metal has none (Blender's Principled BSDF before 5.0).
+    pub on_metal: bool,
 }
 
 /// How strength widens microfacets of width α.

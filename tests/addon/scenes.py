@@ -955,7 +955,8 @@ def brushed_by_map():
 
 
 def varying_index():
-    """Indices of refraction that follow a texture: of a dielectric, its coat, and a film on metal."""
+    """Indices of refraction that follow a texture: of a dielectric, its coat, and a film on metal, which up to 4.5 shows
+    none."""
     def varying(name, low, high, **inputs):
         def with_index(socket):
             matter = material(socket, **inputs)
@@ -975,9 +976,6 @@ def varying_index():
         bpy.data.objects.remove(obj)
     dark = {"Base_Color": (0.05, 0.05, 0.05, 1.0), "Roughness": 0.3}
     film = {"Metallic": 1.0, "Roughness": 0.3, "Thin_Film_Thickness": 400.0, "Base_Color": (0.7, 0.7, 0.7, 1.0)}
-    if bpy.app.version < (5, 0, 0):
-        # Films are those of dielectrics up to 4.5.
-        film = {**dark, "Thin_Film_Thickness": 400.0}
     balls = [varying("IOR", 1.0, 2.5, **dark),
              varying("Coat IOR", 1.0, 2.5, Coat_Weight=1.0, Coat_Roughness=0.2, **dark),
              varying("Thin Film IOR", 1.1, 2.0, **film)]

@@ -172,6 +172,7 @@ impl Converter<'_, '_> {
                 Channel::G,
                 "iridescence thickness",
             ),
+            on_metal: true,
         });
         material.anisotropy = x.anisotropy.as_ref().map(|a| AnisotropyDesc {
             strength: ScalarInput::constant(self.unit(a.anisotropy_strength, "anisotropy strength")),

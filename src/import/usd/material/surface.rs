@@ -225,6 +225,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
                 thickness_min: 0.0,
                 thickness_max: 1.0,
                 thickness,
+                on_metal: true,
             }
         });
     material.anisotropy =
