@@ -987,6 +987,20 @@ def varying_index():
     world(0.5)
 
 
+def zoomed():
+    """A room through a shifted lens that zooms while the shutter is open."""
+    camera = room()
+    camera.data.shift_x = 0.1
+    scene = bpy.context.scene
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    for frame, lens in ((1, 30.0), (3, 60.0)):
+        camera.data.lens = lens
+        camera.data.keyframe_insert("lens", frame=frame)
+    scene.frame_set(2)
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.5)
+
+
 def uncorrected():
     """Bumps of a material without Bump Map Correction."""
     bumpy()
