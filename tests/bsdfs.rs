@@ -36,8 +36,11 @@ const WHITE: Surface = Surface {
     film: None,
 };
 const COAT: Coat = Coat { weight: 1.0, roughness: 0.1, ior: 1.5, tint: Rgb::WHITE, frame: None };
-const FILM: ThinFilm = ThinFilm { thickness: 400.0, ior: 1.8, weight: 1.0 };
+const FILM: ThinFilm = ThinFilm { thickness: 400.0, ior: 1.8, weight: 1.0, on_metal: true };
+const BARE: ThinFilm = ThinFilm { on_metal: false, ..FILM };
 const FACETS: Microfacets = Microfacets { roughness: 0.3, stretched: None, multiscatter: true };
+const SMOOTH: Microfacets = Microfacets { roughness: 0.0, ..FACETS };
+const MATT: Microfacets = Microfacets { roughness: 1.0, ..FACETS };
 /// Turned by 30 degrees.
 const TURNED: Frame = Frame { s: Vec3::new(0.866_025_4, 0.5, 0.0), t: Vec3::new(-0.5, 0.866_025_4, 0.0), n: Vec3::Z };
 /// Tilted by 20 degrees.
@@ -89,6 +92,10 @@ const fn inside(name: &'static str, surface: Surface, lossless: bool) -> Case {
     Case { name, closure: Closure::Layered(surface), lossless, entering: false, widening: PLAIN }
 }
 
+const fn single_inside(name: &'static str, closure: Closure, lossless: bool) -> Case {
+    Case { name, closure, lossless, entering: false, widening: PLAIN }
+}
+
 const fn single(name: &'static str, closure: Closure, lossless: bool) -> Case {
     Case { name, closure, lossless, entering: true, widening: PLAIN }
 }
@@ -136,6 +143,7 @@ const CASES: &[Case] = &[
     outside("metal, tinted edge", Surface { metal_edge: TEAL, ..METAL }, false),
     outside("metal, stretched", Surface { stretched: Some(STRETCHED), base_color: TEAL, ..METAL }, false),
     outside("metal, film", Surface { film: Some(FILM), base_color: TEAL, ..METAL }, false),
+    outside("metal, no film on it", Surface { film: Some(BARE), roughness: 1.0, ..METAL }, true),
     outside("metal, single scattering", Surface { multiscatter: false, roughness: 1.0, ..METAL }, false),
     outside("glass, film", Surface { film: Some(FILM), ..GLASS }, false),
     inside("glass, film, inside", Surface { film: Some(FILM), ..GLASS }, false),
@@ -191,6 +199,60 @@ const CASES: &[Case] = &[
     single("metal of two values", Closure::Metal { base: TEAL, edge: TEAL, facets: FACETS, film: None }, false),
     single("glass node", Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: FACETS, film: None }, true),
     single("refraction", Closure::Refraction { color: Rgb::WHITE, ior: 1.5, facets: FACETS }, false),
+    single(
+        "metal of two values, film",
+        Closure::Metal { base: TEAL, edge: TEAL, facets: FACETS, film: Some(FILM) },
+        false,
+    ),
+    single(
+        "metal of two values, matt",
+        Closure::Metal { base: Rgb::WHITE, edge: Rgb::WHITE, facets: MATT, film: None },
+        true,
+    ),
+    single("gold, smooth", Closure::Conductor { index: GOLD, facets: SMOOTH, film: None }, false),
+    single("gold, matt", Closure::Conductor { index: GOLD, facets: MATT, film: None }, false),
+    single(
+        "gold, stretched",
+        Closure::Conductor { index: GOLD, facets: Microfacets { stretched: Some(STRETCHED), ..FACETS }, film: None },
+        false,
+    ),
+    single("glass node, smooth", Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: SMOOTH, film: None }, true),
+    single("glass node, matt", Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: MATT, film: None }, true),
+    single("glass node, film", Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: FACETS, film: Some(FILM) }, false),
+    single_inside(
+        "glass node, inside",
+        Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: FACETS, film: None },
+        true,
+    ),
+    single_inside(
+        "glass node, smooth, inside",
+        Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: SMOOTH, film: None },
+        true,
+    ),
+    single_inside(
+        "glass node, matt, inside",
+        Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: MATT, film: None },
+        true,
+    ),
+    single_inside(
+        "glass node, film, inside",
+        Closure::Glass { color: Rgb::WHITE, ior: 1.5, facets: FACETS, film: Some(FILM) },
+        false,
+    ),
+    single("refraction, smooth", Closure::Refraction { color: Rgb::WHITE, ior: 1.5, facets: SMOOTH }, false),
+    single("refraction, matt", Closure::Refraction { color: Rgb::WHITE, ior: 1.5, facets: MATT }, false),
+    single_inside("refraction, inside", Closure::Refraction { color: TEAL, ior: 1.5, facets: FACETS }, false),
+    single_inside("refraction, smooth, inside", Closure::Refraction { color: TEAL, ior: 1.5, facets: SMOOTH }, false),
+    single_inside("refraction, matt, inside", Closure::Refraction { color: TEAL, ior: 1.5, facets: MATT }, false),
+    single_inside(
+        "metal, film, back",
+        Closure::Metal { base: TEAL, edge: TEAL, facets: FACETS, film: Some(FILM) },
+        false,
+    ),
+    single_inside("gold, back", Closure::Conductor { index: GOLD, facets: FACETS, film: None }, false),
+    single("glossy, matt", Closure::Glossy { color: Rgb::WHITE, facets: MATT }, true),
+    single("sheen node, matt", Closure::Sheen(Sheen { color: Rgb::WHITE, roughness: 1.0 }), false),
+    single("sheen node, smooth", Closure::Sheen(Sheen { color: Rgb::WHITE, roughness: 0.0 }), false),
     single("sheen node", Closure::Sheen(Sheen { color: Rgb::WHITE, roughness: 0.3 }), false),
     single("toon", Closure::Toon { color: Rgb::WHITE, size: [0.5, 0.2], glossy: false }, false),
     blurred(outside("plastic, smooth, blurred", Surface { roughness: 0.0, ..WHITE }, true)),
@@ -220,7 +282,20 @@ impl Case {
     fn is_stretched(&self) -> bool {
         match &self.closure {
             Closure::Layered(surface) => surface.stretched.is_some(),
-            Closure::Glossy { facets, .. } => facets.stretched.is_some(),
+            Closure::Glossy { facets, .. } | Closure::Metal { facets, .. } | Closure::Conductor { facets, .. } => {
+                facets.stretched.is_some()
+            }
+            _ => false,
+        }
+    }
+
+    /// True where light meets a film.
+    fn has_film(&self) -> bool {
+        match &self.closure {
+            Closure::Layered(surface) => surface.film.is_some_and(|film| film.on_metal || surface.metallic < 1.0),
+            Closure::Metal { film, .. } | Closure::Conductor { film, .. } | Closure::Glass { film, .. } => {
+                film.is_some()
+            }
             _ => false,
         }
     }
@@ -232,11 +307,8 @@ impl Case {
             return true;
         }
         match &self.closure {
-            Closure::Layered(surface) => surface.film.is_some() || surface.stretched.is_some(),
-            Closure::Metal { film, facets, .. } => film.is_some() || facets.stretched.is_some(),
-            Closure::Glossy { facets, .. } => facets.stretched.is_some(),
             Closure::Conductor { .. } | Closure::Toon { .. } => true,
-            _ => false,
+            _ => self.has_film() || self.is_stretched(),
         }
     }
 
@@ -249,7 +321,11 @@ impl Case {
 
     /// True where light comes from the denser side of glass.
     fn has_critical_angle(&self) -> bool {
-        self.layered().is_some_and(|s| s.transmission > 0.0 && (!self.entering || s.ior < 1.0))
+        match &self.closure {
+            Closure::Layered(s) => s.transmission > 0.0 && (!self.entering || s.ior < 1.0),
+            Closure::Glass { ior, .. } | Closure::Refraction { ior, .. } => !self.entering || *ior < 1.0,
+            _ => false,
+        }
     }
 }
 
@@ -324,9 +400,13 @@ fn samples_agree_with_eval() {
                 if bsdf.is_delta_only() {
                     assert!(s.delta && eval.pdf == 0.0 && eval.f_cos.sum().is_black());
                 }
-                let Some(surface) = case.layered() else { continue };
-                let crosses = s.lobe == Lobe::Transmission && !surface.thin && surface.ior != 1.0;
-                let eta = if case.entering { surface.ior } else { 1.0 / surface.ior };
+                let (ior, thin) = match case.closure {
+                    Closure::Layered(surface) => (surface.ior, surface.thin),
+                    Closure::Glass { ior, .. } | Closure::Refraction { ior, .. } => (ior, false),
+                    _ => continue,
+                };
+                let crosses = s.lobe == Lobe::Transmission && !thin && ior != 1.0;
+                let eta = if case.entering { ior } else { 1.0 / ior };
                 assert_eq!(s.eta, if crosses { eta } else { 1.0 }, "{name}");
             }
         }
@@ -459,11 +539,12 @@ fn check_energy(case: &Case, bsdf: &Bsdf, degrees: f32) {
     for c in total(furnace(bsdf, 1 << 15)).to_array() {
         // The tables are made so that nothing is gained; what is left is the noise of the furnace. Films have none, and
         // for stretched microfacets stand round ones.
-        let most = match case.layered() {
-            Some(Surface { film: Some(_), .. }) => 1.015,
-            // Round microfacets stand for stretched ones.
-            _ if case.is_stretched() => 1.035,
-            _ => 1.003,
+        let most = if case.has_film() {
+            1.015
+        } else if case.is_stretched() {
+            1.035
+        } else {
+            1.003
         };
         assert!(c <= most, "{} {degrees}: {c}", case.name);
         assert!(!case.lossless || c >= 1.0 - tolerance, "{} {degrees}: {c}", case.name);
@@ -477,7 +558,7 @@ fn films_gain_next_to_nothing() {
     let films = [1.2, 2.4].into_iter().flat_map(|ior| [150.0, 300.0, 1000.0].map(|thickness| (ior, thickness)));
     for (ior, thickness) in films {
         for (roughness, degrees) in [0.25, 0.5, 1.0].into_iter().flat_map(|r| [0.0, 70.0, 88.0].map(|d| (r, d))) {
-            let film = Some(ThinFilm { thickness, ior, weight: 1.0 });
+            let film = Some(ThinFilm { thickness, ior, weight: 1.0, on_metal: true });
             for (base, most) in [(METAL, 1.002), (GLASS, 1.015)] {
                 for entering in [true, false] {
                     let surface = Surface { film, roughness, ..base };
@@ -537,10 +618,21 @@ fn white_coats_keep_all_light_and_no_more() {
     }
 }
 
-/// Cycles 5.0.1, white furnace over an infinite plane, MULTI_GGX, measured at 1024 samples.
+/// Cycles 5.0.1, white furnace over an infinite plane, MULTI_GGX, measured at 1024 samples; where docs/validation/materials.md
+/// has them, of tilted squares at 512. Means of the channels.
 #[test]
 fn furnace_of_cycles() {
     let gray = |v| Rgb::splat(v);
+    let lacquer = Coat { roughness: 0.03, ..COAT };
+    let black = Surface { base_color: Rgb::BLACK, specular_level: 0.0, ..WHITE };
+    let oil = ThinFilm { thickness: 300.0, ior: 1.33, ..FILM };
+    // Anisotropic of Blender's Principled node, by a tangent towards which the view is tilted, and one across.
+    let along = Frame { s: Vec3::X, t: Vec3::Y, n: Vec3::Z };
+    let across = Frame { s: Vec3::Y, t: -Vec3::X, n: Vec3::Z };
+    let stretched = |anisotropic: f32, frame| {
+        let aspect = (1.0 - 0.9 * anisotropic).sqrt();
+        Surface { stretched: Some(Stretched { alpha: [0.25 / aspect, 0.25 * aspect], frame }), ..METAL }
+    };
     let table: &[(&str, Surface, [f32; 5])] = &[
         ("metal 1, r .5", METAL, [1.0005, 1.0004, 1.0, 0.9999, 0.9994]),
         ("metal 1, r 1", Surface { roughness: 1.0, ..METAL }, [1.0001, 1.0001, 0.9998, 0.9999, 0.9985]),
@@ -573,10 +665,67 @@ fn furnace_of_cycles() {
             Surface { base_color: gray(0.4), diffuse_roughness: 1.0, specular_level: 0.0, ..WHITE },
             [0.3234, 0.3371, 0.3538, 0.3763, 0.3923],
         ),
+        (
+            "metal .5, r 0, edge .5",
+            Surface { metal_edge: gray(0.5), base_color: gray(0.5), roughness: 0.0, ..METAL },
+            [0.5000, 0.4982, 0.4652, 0.3349, 0.4914],
+        ),
+        ("coat on black", Surface { coat: Some(lacquer), ..black }, [0.0400, 0.0502, 0.0892, 0.2530, 0.6126]),
+        (
+            "coat of tint .5",
+            Surface { coat: Some(Coat { tint: gray(0.5), ..lacquer }), base_color: Rgb::WHITE, ..black },
+            [0.5200, 0.4829, 0.4786, 0.5549, 0.7635],
+        ),
+        (
+            "coat of IOR 2, half",
+            Surface { coat: Some(Coat { weight: 0.5, ior: 2.0, ..lacquer }), ..WHITE },
+            [1.0004, 0.9989, 0.9977, 0.9965, 0.9914],
+        ),
+        (
+            "sheen, r .5",
+            Surface { sheen: Some(Sheen { color: Rgb::WHITE, roughness: 0.5 }), ..black },
+            [0.0186, 0.0672, 0.1539, 0.3577, 0.5698],
+        ),
+        (
+            "sheen, r 1",
+            Surface { sheen: Some(Sheen { color: Rgb::WHITE, roughness: 1.0 }), ..black },
+            [0.3419, 0.4209, 0.4988, 0.6151, 0.7047],
+        ),
+        (
+            "film on a dielectric",
+            Surface { film: Some(oil), roughness: 0.0, base_color: Rgb::BLACK, ..WHITE },
+            [0.0185, 0.0312, 0.0732, 0.2395, 0.6041],
+        ),
+        (
+            "film on metal",
+            Surface { film: Some(ThinFilm { ior: 1.6, ..oil }), roughness: 0.2, base_color: gray(0.7), ..METAL },
+            [0.6002, 0.5553, 0.5510, 0.6320, 0.7552],
+        ),
+        ("stretched .5, along", stretched(0.5, along), [0.9808, 0.9744, 0.9829, 1.0137, 1.0208]),
+        ("stretched .5, across", stretched(0.5, across), [0.9807, 0.9909, 0.9943, 0.9725, 0.9566]),
+        ("stretched .9, along", stretched(0.9, along), [0.8424, 0.8665, 0.9145, 0.9973, 1.0179]),
+        ("stretched .9, across", stretched(0.9, across), [0.8427, 0.8659, 0.8836, 0.8670, 0.8167]),
     ];
-    for (name, surface, expected) in table {
+    let glass = |roughness, ior, color| {
+        let facets = Microfacets { roughness, ..FACETS };
+        Closure::Glass { color: gray(color), ior, facets, film: None }
+    };
+    let singles = [
+        ("glass, IOR 1.1", glass(0.3, 1.1, 1.0), [1.0000, 1.0003, 0.9999, 1.0004, 0.9969]),
+        ("glass, IOR 2.4", glass(0.3, 2.4, 1.0), [1.0001, 1.0004, 1.0004, 1.0008, 0.9935]),
+        ("glass .25, r .5", glass(0.5, 1.5, 0.25), [0.2483, 0.2462, 0.2423, 0.2354, 0.2345]),
+        ("glass .25, r 1", glass(1.0, 1.5, 0.25), [0.2289, 0.2108, 0.1988, 0.1910, 0.2004]),
+        ("glass .25, r .25, IOR .67", glass(0.25, 1.0 / 1.5, 0.25), [0.2492, 0.2476, 0.2474, 0.2424, 0.2266]),
+        (
+            "gold, r .3",
+            Closure::Conductor { index: GOLD, facets: FACETS, film: None },
+            [0.6970, 0.6986, 0.7068, 0.7398, 0.7816],
+        ),
+    ];
+    let layers = table.iter().map(|(name, surface, expected)| (*name, Closure::Layered(*surface), *expected));
+    for (name, closure, expected) in layers.chain(singles.iter().copied()) {
         for (degrees, expected) in [0.0, 45.0, 60.0, 75.0, 85.0].into_iter().zip(expected) {
-            let seen = total(furnace(&Bsdf::new(surface, view(degrees, 0.0, true), true), 1 << 17)).g;
+            let seen = total(furnace(&seen(&closure, view(degrees, 0.0, true), true, PLAIN), 1 << 17)).mean();
             println!("{name:22} {degrees:4} {seen:.4} {expected:.4}");
             // Cycles itself strays from 1 by as much at 85 degrees, where white plastic is exact here.
             assert!((seen / expected - 1.0).abs() < 0.0105, "{name}, {degrees}: {seen} {expected}");

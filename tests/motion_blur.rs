@@ -7,7 +7,8 @@ mod scene;
 use std::f64::consts::PI;
 
 use penumbra::desc::{
-    AlphaMode, ColorInput, LightKind, MaterialDesc, Motion, RoundsDesc, ScalarInput, SceneDesc, Strand, Visibility,
+    AlphaMode, ColorInput, LightKind, MaterialDesc, Motion, ProjectionDesc, RoundsDesc, ScalarInput, SceneDesc, Strand,
+    Visibility,
 };
 use penumbra::film::{Filter, Picture};
 use penumbra::math::{DAffine3, DVec3};
@@ -641,4 +642,27 @@ def Material "Glow" {{
         let found = picture(&desc, SIZE, &boxed("combined", SPP));
         assert_near(what, &profile(&found, "Combined", 0), &expected, IN_PROFILE);
     }
+}
+
+/// Tangents of half the field of view go straight from 1 to 2: a pixel sees the square while its own tangent times that is
+/// within half of the square's size.
+#[test]
+fn a_zoom_is_blurred() {
+    let frame = |share: f64| ProjectionDesc::Perspective { fov_y: 2.0 * (1.0 + share).atan(), aspect: Some(1.0) };
+    let mut desc = square(-0.5, 0.5).desc;
+    (desc.cameras[0].projection, desc.cameras[0].zoom) = (frame(FRAME), keys(3, frame));
+    let blurred = picture(&desc, SIZE, &boxed("combined", SPP));
+    let pixel = 2.0 / f64::from(SIZE);
+    let seen = |x: f64| (0.5 / x.abs().max(1e-9) - 1.0).clamp(0.0, 1.0);
+    let of_pixel =
+        |i: u32| (0..64).map(|k| seen(-1.0 + pixel * (f64::from(i) + (f64::from(k) + 0.5) / 64.0))).sum::<f64>() / 64.0;
+    let expected: Vec<f64> = (0..SIZE).map(of_pixel).collect();
+    // Rows that see the square all the time.
+    for y in [14, 15, 16, 17] {
+        assert_near("zoom", &row(&blurred, "Combined", 0, y), &expected, f64::from(SPP));
+    }
+    let parallel = |share: f64| ProjectionDesc::Orthographic { half_width: 1.0 + share, half_height: 1.0 + share };
+    (desc.cameras[0].projection, desc.cameras[0].zoom) = (parallel(FRAME), keys(3, parallel));
+    let sharp = picture(&desc, SIZE, &boxed("combined", 16));
+    assert!(row(&sharp, "Combined", 0, 16).iter().filter(|v| **v > 0.01 && **v < 0.99).count() <= 2);
 }

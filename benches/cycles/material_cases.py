@@ -4,10 +4,14 @@ PRINCIPLED = "ShaderNodeBsdfPrincipled"
 
 
 class Case:
-    """A node type, its properties (lower case) and its inputs, by their names with _ for a blank."""
+    """A node type, its properties (lower case) and its inputs, by their names with _ for a blank.
 
-    def __init__(self, name, node=PRINCIPLED, properties=None, **inputs):
+    `links` are of inputs that other nodes are linked to: by the input's name a case for the node, and its output.
+    """
+
+    def __init__(self, name, node=PRINCIPLED, properties=None, links=None, **inputs):
         self.name, self.node, self.properties, self.inputs = name, node, properties or {}, inputs
+        self.links = links or {}
 
 
 def gray(value):
@@ -96,6 +100,12 @@ def _principled():
     for anisotropic in (0.3, 0.8):
         yield Case(f"Anisotropic {anisotropic}, metal", Base_Color=WHITE, Metallic=1.0, Roughness=0.5,
                    Anisotropic=anisotropic)
+    # Squares are tilted towards x.
+    tilt = {"Tangent": (Case("tilt", "ShaderNodeCombineXYZ", X=1.0), "Vector")}
+    for anisotropic in (0.5, 0.9):
+        for which, rotation in (("along", 0.0), ("across", 0.25)):
+            yield Case(f"Anisotropic {anisotropic}, metal, stretched {which}", links=tilt, Base_Color=WHITE, Metallic=1.0,
+                       Roughness=0.5, Anisotropic=anisotropic, Anisotropic_Rotation=rotation)
     for roughness in (0.0, 0.03, 0.5, 1.0):
         yield Case(f"coat, roughness {roughness}", Base_Color=WHITE, Coat_Weight=1.0, Coat_Roughness=roughness)
         yield Case(f"coat on black, roughness {roughness}", Base_Color=BLACK, Specular_IOR_Level=0.0, Coat_Weight=1.0,
@@ -134,8 +144,9 @@ _STEPS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 def rows():
     """Rows of spheres: the parameter that grows along each, and the spheres."""
-    def row(name, values, **others):
-        cases = [Case(f"{name} {value:g}", **{**_SATIN, **others, name.replace(" ", "_"): value}) for value in values]
+    def row(name, values, properties=None, **others):
+        cases = [Case(f"{name} {value:g}", properties=properties, **{**_SATIN, **others, name.replace(" ", "_"): value})
+                 for value in values]
         return name, cases
 
     def tints(name, **others):
@@ -143,11 +154,32 @@ def rows():
                  for value in _STEPS]
         return name, cases
 
+    def bent(name, **others):
+        """A normal map, tilted all over, by its strength."""
+        def case(value):
+            tilted = Case("tilted", "ShaderNodeNormalMap", Color=(0.8, 0.4, 0.85, 1.0), Strength=value)
+            return Case(f"{name} {value:g}", links={name.replace(" ", "_"): (tilted, "Normal")}, **_SATIN, **others)
+        return name, [case(value) for value in _STEPS]
+
+    def tangents(name, **others):
+        """Along circles around each axis, along the texture coordinates, along the geometry's own."""
+        around = [(axis, Case(axis, "ShaderNodeTangent", {"direction_type": "RADIAL", "axis": axis})) for axis in "XYZ"]
+        nodes = [*around, ("UV", Case("UV", "ShaderNodeTangent", {"direction_type": "UV_MAP"})),
+                 ("Geometry", Case("Geometry", "ShaderNodeNewGeometry"))]
+        return name, [Case(f"{name} {value}", links={name: (node, "Tangent")}, **_SATIN, **others) for value, node in nodes]
+
+    def radii(name, **others):
+        cases = [Case(f"{name} {value:g}", **{**_SATIN, **others, name.replace(" ", "_"): (1.0, value, value**2)})
+                 for value in _STEPS]
+        return name, cases
+
     def rename(name, named):
         return name, named[1]
 
     coated, glows = {"Coat_Weight": 1.0}, {"Emission_Color": (0.9, 0.6, 0.3, 1.0), "Emission_Strength": 0.5}
+    skin = {"properties": {"subsurface_method": "RANDOM_WALK_SKIN"}, "Subsurface_Weight": 1.0, "Subsurface_Scale": 0.2}
     return [
+        tints("Base Color"),
         row("Roughness", _STEPS),
         row("Metallic", _STEPS),
         row("IOR", (1.0, 1.2, 1.5, 2.0, 3.0)),
@@ -157,6 +189,9 @@ def rows():
         row("Subsurface Weight", _STEPS, Subsurface_Scale=0.2),
         row("Subsurface Anisotropy", (0.0, 0.2, 0.4, 0.6, 0.8), Subsurface_Weight=1.0, Subsurface_Scale=0.2),
         row("Subsurface Scale", (0.01, 0.05, 0.2, 0.5, 1.0), Subsurface_Weight=1.0),
+        radii("Subsurface Radius", Subsurface_Weight=1.0, Subsurface_Scale=0.2),
+        rename("Subsurface Weight of skin", row("Subsurface Weight", _STEPS, **skin)),
+        rename("Subsurface IOR of skin", row("Subsurface IOR", (1.01, 1.2, 1.4, 2.0, 3.0), **skin)),
         row("Transmission Weight", _STEPS),
         rename("Roughness of glass", row("Roughness", _STEPS, Transmission_Weight=1.0, Base_Color=gray(0.8))),
         row("Coat Weight", _STEPS),
@@ -168,11 +203,15 @@ def rows():
         tints("Sheen Tint", Sheen_Weight=1.0),
         row("Anisotropic", _STEPS, Metallic=1.0),
         row("Anisotropic Rotation", _STEPS, Metallic=1.0, Anisotropic=0.8),
+        tangents("Tangent", Metallic=1.0, Anisotropic=0.8),
+        bent("Normal"),
+        bent("Coat Normal", **coated, Coat_Roughness=0.2),
         row("Thin Film Thickness", (0.0, 150.0, 300.0, 500.0, 900.0), Metallic=1.0, Base_Color=gray(0.7)),
         rename("Roughness below a film", row("Roughness", _STEPS, Thin_Film_Thickness=400.0)),
         row("Thin Film IOR", (1.0, 1.2, 1.5, 2.0, 2.5), Metallic=1.0, Base_Color=gray(0.7), Thin_Film_Thickness=400.0),
         row("Alpha", _STEPS),
         row("Emission Strength", (0.0, 0.1, 0.3, 0.6, 1.0)),
+        tints("Emission Color", Emission_Strength=0.5),
         rename("Emission below a coat, by its weight", row("Coat Weight", _STEPS, **glows, Coat_Roughness=0.3)),
         rename("Emission below sheen, by its weight", row("Sheen Weight", _STEPS, **glows)),
     ]

@@ -140,7 +140,8 @@ fn seen_at(cos: f32) -> Vec3 {
 
 fn add_metal(builder: &mut Builder<'_>, weight: Rgb, surface: &Surface, base: Rgb) {
     let metal = Metal::new(base, surface.metal_edge.map(unit));
-    let fresnel = beneath(&surface.film, Base::Metal(metal)).map_or(Fresnel::Metal(metal), Fresnel::Film);
+    let film = surface.film.filter(|film| film.on_metal);
+    let fresnel = beneath(&film, Base::Metal(metal)).map_or(Fresnel::Metal(metal), Fresnel::Film);
     add_facets(builder, weight, surface, fresnel);
 }
 

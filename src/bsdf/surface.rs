@@ -98,6 +98,8 @@ pub struct ThinFilm<S = f32> {
     pub ior: S,
     /// How much of the surface has it, 0 to 1.
     pub weight: S,
+    /// False where metal has none.
+    pub on_metal: bool,
 }
 
 impl Default for Surface {
@@ -172,6 +174,7 @@ impl<C, S> Sheen<C, S> {
 impl<S> ThinFilm<S> {
     /// See [`Surface::map`].
     pub fn map<T>(&self, mut scalar: impl FnMut(&S) -> T) -> ThinFilm<T> {
-        ThinFilm { thickness: scalar(&self.thickness), ior: scalar(&self.ior), weight: scalar(&self.weight) }
+        let Self { thickness, ior, weight, on_metal } = self;
+        ThinFilm { thickness: scalar(thickness), ior: scalar(ior), weight: scalar(weight), on_metal: *on_metal }
     }
 }

@@ -8,7 +8,7 @@ mod perspective;
 mod shutter;
 
 pub use lens::Lens;
-pub use motion::CameraMotion;
+pub use motion::{CameraMotion, Zoom};
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;

@@ -36,7 +36,8 @@ pub struct CameraDesc {
     pub exposure: f64,
     /// The transform at other times of the shutter, in the order of time.
     pub motion: Vec<Motion<DAffine3>>,
-    /// How it projects at the frames before and after where it zooms: what the vector pass asks.
+    /// How it projects at other times, where it zooms: while the shutter is open, or for the vector pass at the frames
+    /// before and after.
     pub zoom: Vec<Motion<ProjectionDesc>>,
 }
 

@@ -53,6 +53,8 @@ pub struct IridescenceDesc {
     pub thickness_max: f64,
     /// Where between the two.
     pub thickness: ScalarInput,
+    /// False where metal has none (Blender's Principled BSDF before 5.0).
+    pub on_metal: bool,
 }
 
 /// How strength widens microfacets of width α.
@@ -65,6 +67,11 @@ pub enum AnisotropyLaw {
     /// Of Blender's Glossy BSDF: α times and over `1 − strength`, narrower along the direction; of a strength below
     /// 0 the other way round.
     Glossy,
+    /// Of MaterialX's `roughness_anisotropy`: α over and times `√(1 − strength)`, wider along the direction; strengths
+    /// count up to 0.98.
+    RoughnessAnisotropy,
+    /// Of OpenPBR: `α √(2 / (1 + (1 − strength)²))` along the direction, `1 − strength` times that across.
+    OpenPbr,
 }
 
 /// Microfacets that are wider along one direction.

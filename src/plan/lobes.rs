@@ -82,7 +82,7 @@ fn layered(m: &MaterialDesc, graph: &Graph, all: &mut Vec<Lobe>) {
         all.push(Lobe::Metal);
     }
     if !is_full(&m.metallic, graph) {
-        if shows(&m.specular) {
+        if shows(&m.specular) && (shows(&m.specular_level) || shows(&m.transmission)) {
             all.push(Lobe::Reflection);
         }
         if shows(&m.transmission) {

@@ -221,18 +221,54 @@ impl Scene {
         let along = Frame::from_z_and_tangent(around, tangent);
         let (sin, cos) = rotation.sin_cos();
         let frame = Frame { s: along.s * cos + along.t * sin, t: along.t * cos - along.s * sin, n: along.n };
-        let alpha = sqr(roughness.clamp(0.0, 1.0));
-        let alpha = match anisotropy.law {
-            AnisotropyLaw::Gltf => [alpha + (1.0 - alpha) * sqr(strength), alpha],
-            AnisotropyLaw::Aspect => {
-                let aspect = (1.0 - 0.9 * strength).sqrt();
-                [alpha / aspect, alpha * aspect]
-            }
-            AnisotropyLaw::Glossy => {
-                let narrow = 1.0 - strength.abs().min(0.99);
-                if strength > 0.0 { [alpha * narrow, alpha / narrow] } else { [alpha / narrow, alpha * narrow] }
-            }
+        Some(Stretched { alpha: widths(anisotropy.law, strength, sqr(roughness.clamp(0.0, 1.0))), frame })
+    }
+}
+
+/// What `law` makes of microfacets of width `alpha`: widths along and across.
+fn widths(law: AnisotropyLaw, strength: f32, alpha: f32) -> [f32; 2] {
+    match law {
+        AnisotropyLaw::Gltf => [alpha + (1.0 - alpha) * sqr(strength), alpha],
+        AnisotropyLaw::Aspect => {
+            let aspect = (1.0 - 0.9 * strength).sqrt();
+            [alpha / aspect, alpha * aspect]
+        }
+        AnisotropyLaw::Glossy => {
+            let narrow = 1.0 - strength.abs().min(0.99);
+            if strength > 0.0 { [alpha * narrow, alpha / narrow] } else { [alpha / narrow, alpha * narrow] }
+        }
+        AnisotropyLaw::RoughnessAnisotropy => {
+            let aspect = (1.0 - strength.min(0.98)).sqrt();
+            [alpha / aspect, alpha * aspect]
+        }
+        AnisotropyLaw::OpenPbr => {
+            let narrow = 1.0 - strength;
+            let along = alpha * (2.0 / (1.0 + sqr(narrow))).sqrt();
+            [along, narrow * along]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// MaterialX 1.39: `mx_roughness_anisotropy.glsl`, and the graph of `open_pbr_anisotropy`, which keeps the mean of
+    /// the squares; roughness 0.4.
+    #[test]
+    fn laws_of_materialx() {
+        let close = |found: [f32; 2], expected: [f32; 2]| {
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?} {expected:?}");
         };
-        Some(Stretched { alpha, frame })
+        close(widths(AnisotropyLaw::RoughnessAnisotropy, 0.5, 0.16), [0.226_274_17, 0.113_137_09]);
+        close(widths(AnisotropyLaw::RoughnessAnisotropy, 1.0, 0.16), [1.131_370_9, 0.022_627_417]);
+        close(widths(AnisotropyLaw::OpenPbr, 0.5, 0.16), [0.202_385_77, 0.101_192_89]);
+        for strength in [0.0, 0.3, 0.9, 1.0] {
+            let [along, across] = widths(AnisotropyLaw::OpenPbr, strength, 0.16);
+            assert!((0.5 * (sqr(along) + sqr(across)) - sqr(0.16)).abs() < 1e-7);
+        }
+        for law in [AnisotropyLaw::Aspect, AnisotropyLaw::OpenPbr, AnisotropyLaw::RoughnessAnisotropy] {
+            close(widths(law, 0.0, 0.16), [0.16; 2]);
+        }
     }
 }

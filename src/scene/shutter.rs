@@ -4,7 +4,7 @@
 //! where it closes. How likely each is in between says [`Exposure`](crate::camera::Exposure).
 
 use super::effects::is_met;
-use crate::desc::{CameraDesc, InstanceDesc, Motion, SceneDesc, ShapeRef};
+use crate::desc::{CameraDesc, InstanceDesc, Motion, ProjectionDesc, SceneDesc, ShapeRef};
 use crate::math::DAffine3;
 use crate::settings::Settings;
 
@@ -55,6 +55,15 @@ impl Shutter {
         self.keys(&instance.transform, &instance.motion)
     }
 
+    /// How `camera` projects, where it is a perspective one that zooms; others are as at the frame, as in Cycles.
+    pub fn zoom<'a>(&self, camera: &'a CameraDesc) -> Option<Keys<'a, ProjectionDesc>> {
+        let usable = |projection: &ProjectionDesc| match projection {
+            ProjectionDesc::Perspective { fov_y, .. } => *fov_y > 0.0 && *fov_y < std::f64::consts::PI,
+            _ => false,
+        };
+        self.keys(&camera.projection, &camera.zoom).filter(|keys| keys.iter().all(|key| usable(key.1)))
+    }
+
     /// True where a picture of `scene` by `camera` shows that something moves.
     pub fn shows_motion(&self, scene: &SceneDesc, camera: &CameraDesc) -> bool {
         let deforms = |shape: ShapeRef| match shape {
@@ -68,6 +77,7 @@ impl Shutter {
             }
         };
         self.keys(&camera.transform, &camera.motion).is_some()
+            || self.zoom(camera).is_some()
             || scene.instances.iter().any(|instance| {
                 (self.transform(instance).is_some() || deforms(instance.shape)) && is_met(scene, instance)
             })

@@ -152,7 +152,7 @@ def off():
 
 
 def changing_count():
-    """A mesh of another number of vertices at each time, and a zoom: what is told, by F12."""
+    """A mesh of another number of vertices at each time, which is told, and a zoom, which is not, by F12."""
     scene = _scene(spp=1)
     render = scene.render
     render.use_motion_blur, render.motion_blur_shutter = True, 1.0

@@ -955,7 +955,8 @@ def brushed_by_map():
 
 
 def varying_index():
-    """Indices of refraction that follow a texture: of a dielectric, its coat, and a film on metal."""
+    """Indices of refraction that follow a texture: of a dielectric, its coat, and a film on metal, which up to 4.5 shows
+    none."""
     def varying(name, low, high, **inputs):
         def with_index(socket):
             matter = material(socket, **inputs)
@@ -975,9 +976,6 @@ def varying_index():
         bpy.data.objects.remove(obj)
     dark = {"Base_Color": (0.05, 0.05, 0.05, 1.0), "Roughness": 0.3}
     film = {"Metallic": 1.0, "Roughness": 0.3, "Thin_Film_Thickness": 400.0, "Base_Color": (0.7, 0.7, 0.7, 1.0)}
-    if bpy.app.version < (5, 0, 0):
-        # Films are those of dielectrics up to 4.5.
-        film = {**dark, "Thin_Film_Thickness": 400.0}
     balls = [varying("IOR", 1.0, 2.5, **dark),
              varying("Coat IOR", 1.0, 2.5, Coat_Weight=1.0, Coat_Roughness=0.2, **dark),
              varying("Thin Film IOR", 1.1, 2.0, **film)]
@@ -985,6 +983,20 @@ def varying_index():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.7, location=(1.6 * i - 1.6, -1.2, 0.8))
         bpy.ops.object.shade_smooth()
         bpy.context.object.data.materials.append(matter)
+    lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
+    world(0.5)
+
+
+def zoomed():
+    """A room through a shifted lens that zooms while the shutter is open."""
+    camera = room()
+    camera.data.shift_x = 0.1
+    scene = bpy.context.scene
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    for frame, lens in ((1, 30.0), (3, 60.0)):
+        camera.data.lens = lens
+        camera.data.keyframe_insert("lens", frame=frame)
+    scene.frame_set(2)
     lamp("AREA", (1.5, -1.0, 3.0), (0.2, 0.45, 0.0), energy=150.0, size=1.5)
     world(0.5)
 

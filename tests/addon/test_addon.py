@@ -82,7 +82,7 @@ def _unlike(expected, found, blocks=4):
              "leaf", "red_film", "glow", "filter_glossy", "no_caustics",
              "no_refractive_caustics", "clamped", "few_diffuse_bounces", "few_glossy_bounces", "few_transmission_bounces",
              "panes", "wax", "skin", "burley", "candle", "coarse", "bumpy",
-             "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index",
+             "uncorrected", "attributes", "overridden", "filtered", "murky", "submerged", "tinted_glass", "brushed_by_map", "varying_index", "zoomed",
              "relief", "relief_of_world", "relief_of_vectors", "relief_of_tangents", "relief_of_color", "colors_as_shaders",
              "bright_colors", "light_taken", "gobo_point", "gobo_of_directions", "gobo_spot", "gobo_of_normals", "gobo_area",
              "lamp_by_distance", "lamp_of_ies", "few_bounces_of_lamps", "no_bounces_of_a_wide_lamp", "islands", "tangents", "pointed", "attributes_of_hair",

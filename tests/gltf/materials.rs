@@ -86,6 +86,7 @@ fn every_material_extension() {
         "KHR_materials_iridescence": {"iridescenceFactor": 0.6, "iridescenceTexture": t, "iridescenceIor": 1.4, "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 500, "iridescenceThicknessTexture": t},
         "KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1.25, "anisotropyTexture": t},
         "KHR_materials_dispersion": {"dispersion": 0.33},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25, "diffuseTransmissionTexture": t, "diffuseTransmissionColorFactor": [0.4, 0.5, 0.6], "diffuseTransmissionColorTexture": t},
     }})));
     let m = material(&scene);
     let channel = |input: penumbra::desc::ScalarInput| (input.factor, input.texture.unwrap().1);
@@ -107,12 +108,26 @@ fn every_material_extension() {
     assert_eq!(film.thickness.texture.unwrap().1, Channel::G);
     let anisotropy = m.anisotropy.unwrap();
     assert_eq!((anisotropy.strength.factor, anisotropy.rotation.factor), (0.5, 1.25));
+    let translucent = m.translucent.unwrap();
+    assert_eq!((channel(translucent.weight), translucent.color.factor), ((0.25, Channel::A), [0.4, 0.5, 0.6]));
     let space = |texture: u32| scene.images[scene.textures[texture as usize].image as usize].color_space;
-    for texture in [sheen.color.texture, m.specular_color.texture] {
+    for texture in [sheen.color.texture, m.specular_color.texture, translucent.color.texture] {
         assert_eq!(space(texture.unwrap().texture), ColorSpace::Srgb);
     }
     assert_eq!(space(anisotropy.texture.unwrap().texture), ColorSpace::Linear);
     assert!(scene.meshes[0].tangents.is_some(), "anisotropy needs tangents");
+}
+
+/// The share alone: what passes is white.
+#[test]
+fn diffuse_transmission_is_no_reason_to_warn() {
+    let extension = json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25}});
+    let mut glb = with_material(json!({"extensions": extension}));
+    glb.json["extensionsUsed"] = json!(["KHR_materials_diffuse_transmission"]);
+    glb.json["extensionsRequired"] = glb.json["extensionsUsed"].clone();
+    let scene = load(&glb);
+    let translucent = material(&scene).translucent.unwrap();
+    assert_eq!((translucent.weight.factor, translucent.color.factor), (0.25, [1.0; 3]));
 }
 
 /// Sheen and clearcoat dim it; without emission there is nothing to dim.

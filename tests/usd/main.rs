@@ -14,6 +14,7 @@ mod large;
 mod layers;
 mod mutation;
 mod opacity;
+mod open_pbr;
 mod pictures;
 mod primvars;
 mod reliefs;

@@ -15,6 +15,11 @@ _OTHERS = {"lens": 50.0, "sensor_width": 36.0, "sensor_height": 24.0, "sensor_fi
 _SPOT_SIZE = math.pi / 4.0
 
 
+def kind(obj):
+    """The type of the camera that the object `obj` is or stands for."""
+    return obj.data.type if obj.type == "CAMERA" else "PERSP"
+
+
 def projection(obj):
     """How the object `obj` projects, which is a camera or stands for one: names and values."""
     if obj.type == "CAMERA":
@@ -32,7 +37,7 @@ def camera(obj):
     result = {
         "name": obj.name,
         "matrix": [list(map(float, row)) for row in obj.matrix_world],
-        "type": data.type if obj.type == "CAMERA" else "PERSP",
+        "type": kind(obj),
         **projection(obj),
     }
     if obj.type != "CAMERA":

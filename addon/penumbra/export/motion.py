@@ -130,9 +130,11 @@ class Motion:
             self._frame_set(self._frame, self._subframe)
         return of_camera
 
-    def _note_zoom(self, _after, _camera_object):
-        """The camera has another lens at a time."""
-        self.warnings.add("the camera zooms while the shutter is open: that is not blurred")
+    def _note_zoom(self, after, camera_object):
+        """The camera has another lens at a time. Cycles blurs that in perspective."""
+        kind = camera.kind(camera_object)
+        if kind == "PERSP":
+            self.zoom.append([after, {"type": kind, **camera.projection(camera_object)}])
 
     def _go_to(self, after):
         time = self._frame + self._subframe + after
@@ -188,7 +190,7 @@ class Vectors(Motion):
         return {}
 
     def _note_zoom(self, after, camera_object):
-        kind = camera_object.data.type if camera_object.type == "CAMERA" else "PERSP"
+        kind = camera.kind(camera_object)
         if kind != "PANO":
             self.zoom.append([after, {"type": kind, **camera.projection(camera_object)}])
 

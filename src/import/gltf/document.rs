@@ -13,6 +13,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -38,7 +39,6 @@ const MESHOPT: &[&str] = &["EXT_meshopt_compression", "KHR_meshopt_compression"]
 /// Optional extensions that change what is seen, so that their absence is told; without an entry
 /// here an unknown optional extension is ignored.
 const VISIBLE: &[(&str, &str)] = &[
-    ("KHR_materials_diffuse_transmission", "diffuse transmission is left out"),
     ("KHR_materials_subsurface", "subsurface scattering is left out"),
     ("KHR_materials_volume_scatter", "scattering inside of volumes is left out"),
     ("EXT_lights_image_based", "the image-based light is left out"),

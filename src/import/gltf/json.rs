@@ -258,6 +258,8 @@ object!(MaterialExtensions {
     anisotropy: Option<Anisotropy>,
     #[serde(rename = "KHR_materials_clearcoat")]
     clearcoat: Option<Clearcoat>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    diffuse_transmission: Option<DiffuseTransmission>,
     #[serde(rename = "KHR_materials_dispersion")]
     dispersion: Option<Dispersion>,
     #[serde(rename = "KHR_materials_emissive_strength")]
@@ -290,6 +292,12 @@ object!(Clearcoat {
     clearcoat_roughness_factor: f64,
     clearcoat_roughness_texture: Option<TextureInfo>,
     clearcoat_normal_texture: Option<TextureInfo>,
+});
+object!(DiffuseTransmission {
+    diffuse_transmission_factor: f64,
+    diffuse_transmission_texture: Option<TextureInfo>,
+    diffuse_transmission_color_factor: [f64; 3] = [1.0; 3],
+    diffuse_transmission_color_texture: Option<TextureInfo>,
 });
 object!(Dispersion { dispersion: f64 });
 object!(EmissiveStrength { emissive_strength: f64 = 1.0 });

@@ -6,7 +6,7 @@ use super::json::{Material, MetallicRoughness, SpecularGlossiness, TextureInfo};
 use super::texture::Lookup;
 use crate::desc::{
     AlphaMode, AnisotropyDesc, AnisotropyLaw, Channel, CoatDesc, ColorInput, ColorSpace, IridescenceDesc, MaterialDesc,
-    NormalInput, ScalarInput, SheenDesc, VolumeDesc,
+    NormalInput, ScalarInput, SheenDesc, TranslucentDesc, VolumeDesc,
 };
 use crate::error::{Place, Warnings};
 
@@ -115,6 +115,17 @@ impl Converter<'_, '_> {
             let texture = t.transmission_texture.as_ref();
             material.transmission = self.scalar(t.transmission_factor, texture, Channel::R, "transmission");
         }
+        if let Some(t) = &x.diffuse_transmission {
+            let [share, color] = [&t.diffuse_transmission_texture, &t.diffuse_transmission_color_texture];
+            material.translucent = Some(TranslucentDesc {
+                weight: self.scalar(t.diffuse_transmission_factor, share.as_ref(), Channel::A, "diffuse transmission"),
+                color: self.unit_color(
+                    t.diffuse_transmission_color_factor,
+                    color.as_ref(),
+                    "diffuse transmission color",
+                ),
+            });
+        }
         if let Some(volume) = &x.volume {
             let thickness = volume.thickness_texture.as_ref();
             let distance = volume.attenuation_distance.filter(|d| *d > 0.0).unwrap_or(f64::INFINITY);
@@ -161,6 +172,7 @@ impl Converter<'_, '_> {
                 Channel::G,
                 "iridescence thickness",
             ),
+            on_metal: true,
         });
         material.anisotropy = x.anisotropy.as_ref().map(|a| AnisotropyDesc {
             strength: ScalarInput::constant(self.unit(a.anisotropy_strength, "anisotropy strength")),

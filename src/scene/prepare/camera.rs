@@ -1,7 +1,7 @@
 //! The camera that was asked for, moved to render space.
 
 use super::View;
-use crate::camera::{self, Camera, CameraMotion, Lens, Orthographic, Panorama, Perspective, Projection};
+use crate::camera::{self, Camera, CameraMotion, Lens, Orthographic, Panorama, Perspective, Projection, Zoom};
 use crate::desc::{CameraDesc, Conform, LensDesc, ProjectionDesc, RenderDesc, SceneDesc};
 use crate::error::{Error, Result, Warnings};
 use crate::math::{DAffine3, DMat3, DVec3, MovingTransform};
@@ -107,10 +107,19 @@ pub fn prepare(
     shutter: Option<Shutter>,
 ) -> (Camera, Option<CameraMotion>) {
     let camera = still(desc, render, size, origin);
-    let moving = shutter.and_then(|shutter| shutter.keys(&desc.transform, &desc.motion)).and_then(|keys| {
+    let to_render = shutter.and_then(|shutter| shutter.keys(&desc.transform, &desc.motion)).and_then(|keys| {
         let rigid: Vec<_> = keys.into_iter().map(|(time, key)| (time, rigid(key))).collect();
-        Some(CameraMotion { to_render: MovingTransform::new(&rigid)?.rebased(DVec3::ZERO, origin) })
+        Some(MovingTransform::new(&rigid)?.rebased(DVec3::ZERO, origin))
     });
+    let zoom = shutter.and_then(|shutter| shutter.zoom(desc)).and_then(|keys| {
+        let at = |projection| still(&CameraDesc { projection, ..desc.clone() }, render, size, origin).projection;
+        let keys = keys.into_iter().map(|(time, key)| match at(*key) {
+            Projection::Perspective(perspective) => Some((time, perspective)),
+            _ => None,
+        });
+        Zoom::new(&keys.collect::<Option<Vec<_>>>()?)
+    });
+    let moving = (to_render.is_some() || zoom.is_some()).then_some(CameraMotion { to_render, zoom });
     (moving.as_ref().map_or(camera, |motion| motion.at(&camera, 0.5)), moving)
 }
 

@@ -40,7 +40,8 @@ pub struct CameraData {
     pub panorama: PanoramaData,
     /// Where it is at other times of the shutter: frames after the frame, and `matrix_world`.
     pub motion: Vec<(f64, [[f64; 4]; 4])>,
-    /// How it projects at the frames before and after where it zooms: frames after the frame, and the same fields.
+    /// How it projects at other times of the shutter, or at the frames before and after, where it zooms: frames after the
+    /// frame, and the same fields.
     pub zoom: Vec<(f64, Self)>,
 }
 

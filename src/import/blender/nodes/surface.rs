@@ -237,6 +237,8 @@ pub(super) fn film<'a>(flow: &mut Flow<'a, '_>, at: At<'a>) -> Option<Iridescenc
         thickness_min: 0.0,
         thickness_max: 1.0,
         thickness: scalar(flow, thickness),
+        // The Metallic BSDF has one from 5.0 on, too.
+        on_metal: flow.version >= [5, 0, 0],
     })
 }
 

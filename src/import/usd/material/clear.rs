@@ -56,7 +56,7 @@ pub(super) fn split(x: &mut Exprs, s: &mut Surface, of_shape: bool) -> Option<Cl
 }
 
 /// Reflectance at normal incidence.
-fn f0(x: &mut Exprs, ior: Id) -> Id {
+pub(super) fn f0(x: &mut Exprs, ior: Id) -> Id {
     let one = x.number(1.0);
     let (below, above) = (x.subtract(ior, one), x.add(ior, one));
     let ratio = x.math(Math::Divide, &[below, above]);

@@ -4,9 +4,9 @@
 use super::evaluate::Evaluator;
 use super::expr::{Exprs, Id};
 use super::models::pass_thin_wall;
-use super::surface::{Beneath, Surface};
-use crate::desc::SubsurfaceMethod;
+use super::surface::{Anisotropy, Beneath, Surface};
 use crate::desc::graph::{Function, Math};
+use crate::desc::{AnisotropyLaw, SubsurfaceMethod};
 
 /// BSDF trees are followed so deep.
 const DEEPEST: usize = 64;
@@ -311,10 +311,15 @@ fn roughness(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
     if let Some(from) = source(e, node, "roughness")
         && matches!(e.node(from).category.as_str(), "roughness_anisotropy" | "open_pbr_anisotropy")
     {
+        let law = match e.node(from).category.as_str() {
+            "open_pbr_anisotropy" => AnisotropyLaw::OpenPbr,
+            _ => AnisotropyLaw::RoughnessAnisotropy,
+        };
         s.roughness = e.scalar(from, "roughness", 0.0);
         let strength = e.scalar(from, "anisotropy", 0.0);
         if !e.exprs.is(strength, 0.0) {
-            s.anisotropy = Some((strength, tangent(e, node, "tangent")));
+            let rotation = tangent(e, node, "tangent");
+            s.anisotropy = Some(Anisotropy { strength, rotation: e.exprs.number(rotation), law });
         }
         return;
     }

@@ -1,7 +1,8 @@
 //! What a coat does to the surface beneath it beside what its own layer does.
 
+use super::clear::f0;
 use super::evaluate::Evaluator;
-use super::expr::{Id, Op};
+use super::expr::{Exprs, Id, Op};
 use super::surface::Surface;
 use crate::desc::graph::{Function, Leaf, Math};
 
@@ -24,38 +25,54 @@ pub(super) fn dim_emission(e: &mut Evaluator<'_, '_>, s: &mut Surface) {
     s.emission = x.multiply(s.emission, left);
 }
 
-/// What a coat throws back at what is beneath: `coat_darkening` by the node's own definition. What it does to the whole
-/// reflection beneath is done to its colors. Blender's coat, which is written as this one, does not darken.
-pub(super) fn darken(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface, subsurface: Id) {
-    let Some(coat) = s.coat.filter(|coat| !e.exprs.is(coat.weight, 0.0)) else { return };
+/// What a coat throws back at what is beneath: `coat_darkening` by the node's own definition, a factor of all that
+/// scatters there. Blender's coat, which is written as this one, does not darken.
+pub(super) fn darkening(
+    e: &mut Evaluator<'_, '_>,
+    node: usize,
+    s: &Surface,
+    [specular_weight, subsurface]: [Id; 2],
+) -> Id {
+    let one = e.exprs.number(1.0);
+    let Some(coat) = s.coat.filter(|coat| !e.exprs.is(coat.weight, 0.0)) else { return one };
     let amount = e.scalar(node, "coat_darkening", if e.materials.reading.blender { 0.0 } else { 1.0 });
     let color = e.input(node, "base_color", [0.8; 4]);
     let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
     let x = &mut e.exprs;
     let amount = x.multiply(coat.weight, amount);
     if x.is(amount, 0.0) {
-        return;
+        return one;
     }
-    let one = x.number(1.0);
-    let (below, above) = (x.subtract(one, coat.ior), x.add(one, coat.ior));
-    let ratio = x.math(Math::Divide, &[below, above]);
-    let f0 = x.multiply(ratio, ratio);
+    let f0 = f0(x, coat.ior);
     let (passes, squared) = (x.subtract(one, f0), x.multiply(coat.ior, coat.ior));
     // What leaves through the coat, of light that comes from everywhere beneath it.
     let leaves = x.math(Math::Divide, &[passes, squared]);
     let returns = x.subtract(one, leaves);
-    let (metal, dielectric) = (x.multiply(color, s.specular), x.mix(color, beneath, subsurface));
+    let (metal, dielectric) = (x.multiply(color, specular_weight), x.mix(color, beneath, subsurface));
     let albedo = x.mix(dielectric, metal, s.metallic);
     let again = x.multiply(albedo, returns);
     let rest = x.subtract(one, again);
     let factor = x.math(Math::Divide, &[leaves, rest]);
-    let factor = x.mix(one, factor, amount);
-    s.base_color = x.multiply(s.base_color, factor);
-    s.specular_color = x.multiply(s.specular_color, factor);
-    if let Some(beneath) = &mut s.beneath {
-        beneath.color = x.multiply(beneath.color, factor);
-    }
-    if let Some((_, color)) = &mut s.translucent {
-        *color = x.multiply(*color, factor);
-    }
+    x.mix(one, factor, amount)
+}
+
+/// The index that the coat makes of that beneath it, `eta_s`: relative to its own, or the reciprocal where light would go
+/// to what is thinner, so that there is no critical angle.
+pub(super) fn beneath(x: &mut Exprs, s: &Surface) -> Id {
+    let Some(coat) = s.coat.filter(|coat| !x.is(coat.weight, 0.0)) else { return s.ior };
+    let (over, under) = (x.math(Math::Divide, &[s.ior, coat.ior]), x.math(Math::Divide, &[coat.ior, s.ior]));
+    let relative = x.math(Math::Maximum, &[over, under]);
+    x.mix(s.ior, relative, coat.weight)
+}
+
+/// Light is bent at the coat before it meets the surface: `effective_specular_roughness`, (r⁴ + 2 coat⁴)^¼.
+pub(super) fn roughen(x: &mut Exprs, s: &mut Surface) {
+    let Some(coat) = s.coat.filter(|coat| !x.is(coat.weight, 0.0) && !x.is(coat.roughness, 0.0)) else { return };
+    let [four, fourth, one] = [4.0, 0.25, 1.0].map(|value| x.number(value));
+    let [own, above] = [s.roughness, coat.roughness].map(|roughness| x.math(Math::Power, &[roughness, four]));
+    let above = x.scale(above, 2.0);
+    let sum = x.add(own, above);
+    let sum = x.math(Math::Minimum, &[sum, one]);
+    let rough = x.math(Math::Power, &[sum, fourth]);
+    s.roughness = x.mix(s.roughness, rough, coat.weight);
 }

@@ -21,6 +21,7 @@ mod models;
 mod mtlx;
 mod network;
 mod noise;
+mod open_pbr;
 mod pattern;
 mod ramps;
 mod random;

@@ -6,10 +6,10 @@
 use super::evaluate::Evaluator;
 use super::expr::Id;
 use super::network::Source;
-use super::surface::{Alpha, Beneath, Coat, Film, Surface};
-use super::{closure, coat};
-use crate::desc::SubsurfaceMethod;
+use super::surface::{Alpha, Anisotropy, Beneath, Coat, Film, Surface};
+use super::{closure, coat, open_pbr};
 use crate::desc::graph::{Function, Math};
+use crate::desc::{AnisotropyLaw, SubsurfaceMethod};
 
 /// Reflectance at normal incidence of index 1.5.
 const F0_OF_1_5: f64 = 0.04;
@@ -20,7 +20,7 @@ pub(super) fn read(e: &mut Evaluator<'_, '_>, source: &Source) -> Option<Surface
     match e.node(node).category.as_str() {
         "UsdPreviewSurface" => Some(preview(e, node)),
         "standard_surface" => Some(standard_surface(e, node)),
-        "open_pbr_surface" => Some(open_pbr(e, node)),
+        "open_pbr_surface" => Some(open_pbr::surface(e, node)),
         "gltf_pbr" => Some(gltf(e, node)),
         "surface" => Some(closure::surface(e, node)),
         "surface_unlit" => Some(closure::unlit(e, node)),
@@ -98,8 +98,7 @@ fn standard_surface(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     s.metal_edge = s.specular_color;
     s.roughness = e.scalar(node, "specular_roughness", 0.2);
     s.ior = e.scalar(node, "specular_IOR", 1.5);
-    let rotation = e.uniform(node, "specular_rotation", 0.0) * std::f64::consts::TAU;
-    s.anisotropy = Some((e.scalar(node, "specular_anisotropy", 0.0), rotation));
+    s.anisotropy = Some(stretched(e, node));
     s.transmission = e.scalar(node, "transmission", 0.0);
     transmit(e, node, &mut s);
     let abbe = e.uniform(node, "transmission_dispersion", 0.0);
@@ -146,64 +145,21 @@ fn of_principled(e: &mut Evaluator<'_, '_>, s: &mut Surface) {
     s.specular_color = e.exprs.multiply(s.specular_color, factor);
     s.specular = e.exprs.number(1.0);
     s.diffuse_roughness = e.exprs.number(0.0);
-    // Principled's aspect is √(1 − 0.9 anisotropy).
-    s.anisotropy = s.anisotropy.map(|(strength, turn)| (e.exprs.scale(strength, 0.9), turn));
+    s.anisotropy = s.anisotropy.map(|stretched| Anisotropy { law: AnisotropyLaw::Aspect, ..stretched });
 }
 
-fn open_pbr(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
-    let mut s = Surface::new(e);
-    let base = weighted(e, node, ["base_weight", "base_color"], [1.0, 0.8]);
-    let subsurface = e.scalar(node, "subsurface_weight", 0.0);
-    let beneath = e.input(node, "subsurface_color", [0.8, 0.8, 0.8, 1.0]);
-    s.thin_walled = e.uniform(node, "geometry_thin_walled", 0.0) != 0.0;
-    if s.thin_walled {
-        let forward = 0.5 + 0.5 * e.uniform(node, "subsurface_scatter_anisotropy", 0.0).clamp(-1.0, 1.0);
-        pass_thin_wall(e, &mut s, [base, beneath, subsurface], forward);
-    } else {
-        let (scale, longest) = (e.input(node, "subsurface_radius_scale", [1.0, 0.5, 0.25, 1.0]), "subsurface_radius");
-        let longest = e.scalar(node, longest, 1.0);
-        let radius = e.exprs.multiply(scale, longest);
-        scatter_beneath(e, node, &mut s, [base, beneath, subsurface, radius], "subsurface_scatter_anisotropy");
+/// specular_anisotropy along the tangent, which specular_rotation turns as rotate3d does: MaterialX turns clockwise,
+/// the Principled BSDF counter-clockwise.
+fn stretched(e: &mut Evaluator<'_, '_>, node: usize) -> Anisotropy {
+    let way = if e.materials.reading.blender { 1.0 } else { -1.0 };
+    let turns = e.scalar(node, "specular_rotation", 0.0);
+    let (own, turned) = (closure::tangent(e, node, "tangent"), e.exprs.scale(turns, way * std::f64::consts::TAU));
+    let own = e.exprs.number(own);
+    Anisotropy {
+        strength: e.scalar(node, "specular_anisotropy", 0.0),
+        rotation: e.exprs.add(own, turned),
+        law: AnisotropyLaw::RoughnessAnisotropy,
     }
-    s.diffuse_roughness = e.scalar(node, "base_diffuse_roughness", 0.0);
-    s.metallic = e.scalar(node, "base_metalness", 0.0);
-    s.specular = e.scalar(node, "specular_weight", 1.0);
-    s.specular_color = e.input(node, "specular_color", [1.0; 4]);
-    s.metal_edge = s.specular_color;
-    s.roughness = e.scalar(node, "specular_roughness", 0.3);
-    s.ior = e.scalar(node, "specular_ior", 1.5);
-    let anisotropy = e.scalar(node, "specular_roughness_anisotropy", 0.0);
-    if !e.exprs.is(anisotropy, 0.0) {
-        s.anisotropy = Some((anisotropy, closure::tangent(e, node, "geometry_tangent")));
-    }
-    s.transmission = e.scalar(node, "transmission_weight", 0.0);
-    transmit(e, node, &mut s);
-    let abbe = e.uniform(node, "transmission_dispersion_abbe_number", 20.0);
-    let scale = e.uniform(node, "transmission_dispersion_scale", 0.0);
-    s.dispersion = if abbe > 0.0 { 20.0 / abbe * scale } else { 0.0 };
-    s.coat = Some(Coat {
-        weight: e.scalar(node, "coat_weight", 0.0),
-        roughness: e.scalar(node, "coat_roughness", 0.0),
-        ior: e.scalar(node, "coat_ior", 1.6),
-        tint: e.input(node, "coat_color", [1.0; 4]),
-        normal: e.optional(node, "geometry_coat_normal"),
-    });
-    coat::darken(e, node, &mut s, subsurface);
-    left_out(e, node, "coat_roughness_anisotropy", "coat's anisotropy");
-    let fuzz = weighted(e, node, ["fuzz_weight", "fuzz_color"], [0.0, 1.0]);
-    s.sheen = Some((fuzz, e.scalar(node, "fuzz_roughness", 0.5)));
-    let micrometres = e.scalar(node, "thin_film_thickness", 0.5);
-    s.film = Some(Film {
-        weight: e.scalar(node, "thin_film_weight", 0.0),
-        ior: e.scalar(node, "thin_film_ior", 1.4),
-        thickness: e.exprs.scale(micrometres, 1000.0),
-    });
-    // The node's definition emits `luminance × color` as radiance; Blender writes its strength there.
-    s.emission = weighted(e, node, ["emission_luminance", "emission_color"], [0.0, 1.0]);
-    s.opacity = e.scalar(node, "geometry_opacity", 1.0);
-    s.normal = e.optional(node, "geometry_normal");
-    coat::dim_emission(e, &mut s);
-    s
 }
 
 fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
@@ -244,14 +200,15 @@ fn gltf(e: &mut Evaluator<'_, '_>, node: usize) -> Surface {
     let color = e.input(node, "attenuation_color", [1.0; 4]);
     s.attenuation = (distance > 0.0).then_some((distance * e.materials.reading.meters, color));
     let strength = e.scalar(node, "anisotropy_strength", 0.0);
-    s.anisotropy = Some((strength, e.uniform(node, "anisotropy_rotation", 0.0)));
+    let rotation = e.scalar(node, "anisotropy_rotation", 0.0);
+    s.anisotropy = Some(Anisotropy { strength, rotation, law: AnisotropyLaw::Gltf });
     s.dispersion = e.uniform(node, "dispersion", 0.0);
     coat::dim_emission(e, &mut s);
     s
 }
 
 /// A weight times a color.
-fn weighted(e: &mut Evaluator<'_, '_>, node: usize, names: [&str; 2], defaults: [f64; 2]) -> Id {
+pub(super) fn weighted(e: &mut Evaluator<'_, '_>, node: usize, names: [&str; 2], defaults: [f64; 2]) -> Id {
     let weight = e.scalar(node, names[0], defaults[0]);
     let color = e.input(node, names[1], [defaults[1]; 4]);
     e.exprs.multiply(color, weight)
@@ -260,7 +217,7 @@ fn weighted(e: &mut Evaluator<'_, '_>, node: usize, names: [&str; 2], defaults: 
 /// Transmission's color: the tint of the base where it has no depth, that of the inside where it has one.
 /// MaterialX tints each passage by it; a base color is what is left after two (Cycles), and that is what
 /// Blender exports.
-fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
+pub(super) fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
     if e.exprs.is(s.transmission, 0.0) {
         return;
     }
@@ -279,7 +236,7 @@ fn transmit(e: &mut Evaluator<'_, '_>, node: usize, s: &mut Surface) {
 
 /// The diffuse part: `base`, and by its weight light that is scattered `beneath` on paths of a `radius` in the stage's
 /// units. Blender writes its own radius, which is no mean free path.
-fn scatter_beneath(
+pub(super) fn scatter_beneath(
     e: &mut Evaluator<'_, '_>,
     node: usize,
     s: &mut Surface,
@@ -323,7 +280,7 @@ pub(super) fn pass_thin_wall(
     s.translucent = Some((passes, beneath));
 }
 
-fn left_out(e: &mut Evaluator<'_, '_>, node: usize, input: &str, what: &str) {
+pub(super) fn left_out(e: &mut Evaluator<'_, '_>, node: usize, input: &str, what: &str) {
     let value = e.scalar(node, input, 0.0);
     if !e.exprs.is(value, 0.0) {
         e.warn(node, format!("its {what} is left out: not computed yet"));

@@ -31,6 +31,8 @@ pub(super) struct Surface {
     pub ior: Id,
     pub specular: Id,
     pub specular_color: Id,
+    /// Factor of the opaque dielectric's reflectance at normal incidence that changes its index with it.
+    pub specular_level: Id,
     pub transmission: Id,
     /// No inside.
     pub thin_walled: bool,
@@ -41,8 +43,7 @@ pub(super) struct Surface {
     /// Color and roughness.
     pub sheen: Option<(Id, Id)>,
     pub film: Option<Film>,
-    /// Strength, and direction in radians.
-    pub anisotropy: Option<(Id, f64)>,
+    pub anisotropy: Option<Anisotropy>,
     /// Radiance.
     pub emission: Id,
     pub opacity: Id,
@@ -78,6 +79,15 @@ pub(super) struct Film {
     pub ior: Id,
     /// Nanometres.
     pub thickness: Id,
+}
+
+/// Highlights that are wider along a tangent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Anisotropy {
+    pub strength: Id,
+    /// Radians counter-clockwise from the tangent of the first texture coordinates.
+    pub rotation: Id,
+    pub law: AnisotropyLaw,
 }
 
 /// How opacity is read.
@@ -126,6 +136,7 @@ impl Surface {
             ior: x.number(1.5),
             specular: one,
             specular_color: one,
+            specular_level: one,
             transmission: zero,
             thin_walled: false,
             attenuation: None,
@@ -164,6 +175,7 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
         ior: f.scalar(surface.ior),
         specular: f.scalar(surface.specular),
         specular_color: f.color(surface.specular_color),
+        specular_level: f.scalar(surface.specular_level),
         transmission: f.scalar(surface.transmission),
         dispersion: surface.dispersion.max(0.0),
         emission: f.color(surface.emission),
@@ -225,15 +237,14 @@ pub(super) fn finish(e: &mut Evaluator<'_, '_>, node: usize, surface: Surface) -
                 thickness_min: 0.0,
                 thickness_max: 1.0,
                 thickness,
+                on_metal: true,
             }
         });
-    material.anisotropy =
-        surface.anisotropy.filter(|(strength, _)| !f.e.exprs.is(*strength, 0.0)).map(|(strength, rotation)| {
-            // MaterialX narrows by √(1 − a), this law by √(1 − 0.9 s).
-            let strength = ScalarInput::constant((f.number("anisotropy", strength) / 0.9).min(1.0));
-            let rotation = ScalarInput::constant(rotation);
-            AnisotropyDesc { strength, rotation, texture: None, tangent: None, law: AnisotropyLaw::Aspect }
-        });
+    let stretched = surface.anisotropy.filter(|anisotropy| !f.e.exprs.is(anisotropy.strength, 0.0));
+    material.anisotropy = stretched.map(|Anisotropy { strength, rotation, law }| {
+        let (strength, rotation) = (f.scalar(strength), f.scalar(rotation));
+        AnisotropyDesc { strength, rotation, texture: None, tangent: None, law }
+    });
     if let Some(clear) = clear {
         f.see_through(&mut material, clear);
     }
@@ -284,11 +295,6 @@ impl Finisher<'_, '_, '_> {
             }
             _ => ScalarInput::graph(self.lowering.value(&self.e.exprs, id)),
         }
-    }
-
-    /// A number that can't be textured: the mean of one that is.
-    fn number(&mut self, what: &str, id: Id) -> f64 {
-        self.mean(what, id)[0]
     }
 
     fn rgb(&mut self, what: &str, id: Id) -> [f64; 3] {

@@ -192,7 +192,7 @@ impl Builder<'_> {
                 self.scalar(inputs, &desc::ScalarInput::graph(value))
             }
         };
-        Some(ThinFilm { thickness, ior: self.scalar(inputs, &desc.ior), weight })
+        Some(ThinFilm { thickness, ior: self.scalar(inputs, &desc.ior), weight, on_metal: desc.on_metal })
     }
 
     /// An input as a value of the graph.

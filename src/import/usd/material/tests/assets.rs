@@ -92,11 +92,11 @@ fn the_shader_ball_has_documents_and_networks() {
     same(&[glass.ior.factor, glass.roughness.factor, glass.transmission.factor], &[1.54107, 0.01625, 1.0]);
     assert!(glass.volume.is_some());
     same(&gum.subsurface.unwrap().color.factor, &[1.0, 0.22, 0.493]);
-    same(&[gum.specular.factor, gum.ior.factor], &[0.383, 1.584]);
+    same(&[gum.specular_level.factor, gum.ior.factor], &[0.383, 1.584]);
     assert!(!warnings.contains("subsurface"), "{warnings}");
     // open_pbr_surface1: nothing drives its base color, the emission image is not named.
     same(&neutral.base_color.factor, &[0.8; 3]);
-    same(&[neutral.specular.factor, neutral.roughness.factor], &[0.0, 0.0]);
+    same(&[neutral.specular_level.factor, neutral.roughness.factor], &[0.0, 0.0]);
     for textured in [&grid, &bars] {
         let texture = textured.base_color.texture.unwrap();
         let texture = &scene.textures[texture.texture as usize];

@@ -216,7 +216,8 @@ fn coats_darken_what_is_beneath() {
     same(&half.material().base_color.factor, &[0.8, 0.4, 0.0].map(|c| 0.5 * c * darkened(c, 0.25)));
     let metal =
         mtlx(OPEN_PBR, &format!("{lines}\nfloat inputs:base_metalness = 1\nfloat inputs:specular_weight = 0.5"), "");
-    same(&metal.material().base_color.factor, &[0.8, 0.4, 0.0].map(|c| 0.5 * c * darkened(0.5 * c, 0.5)));
+    // The weight counts for what is darkened, and for what is left of it.
+    same(&metal.material().base_color.factor, &[0.8, 0.4, 0.0].map(|c| 0.25 * c * darkened(0.5 * c, 0.5)));
     let none = mtlx(OPEN_PBR, &format!("{lines}\nfloat inputs:coat_darkening = 0"), "");
     same(&none.material().base_color.factor, &[0.4, 0.2, 0.0]);
 }
