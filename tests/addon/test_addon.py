@@ -256,6 +256,23 @@ def test_only_what_changed_crosses_for_the_viewport(blender, tmp_path):
     assert red > green
 
 
+def test_curves_texts_and_metaballs_are_there_once(blender, tmp_path):
+    """What glows is as bright as a mesh of its shape: placed twice, half of its own light would be in its way."""
+    paths, _ = blender.run("glowing", tmp_path)
+    found, expected = (np.dstack([read(path)[f"ViewLayer.Combined.{c}"] for c in "RGB"]) for path in paths)
+    assert expected.mean() > 0.1
+    noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
+    assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise
+
+
+def test_edits_of_curves_texts_metaballs_and_geometry_nodes_are_shown(blender, tmp_path):
+    answer, _ = blender.run("viewport_shapes", tmp_path)
+    for name, steps in answer.items():
+        for shown, afresh in steps:
+            assert np.allclose(shown, afresh, rtol=1e-5), (name, steps)
+        assert np.ptp([shown[0] for shown, _ in steps]) > 1e-4, (name, steps)
+
+
 def test_a_world_by_the_camera_is_that_of_each_view(blender, tmp_path):
     first, looked, expected = blender.run("viewport_window", tmp_path)[0]
     assert np.allclose(looked, expected, rtol=1e-5)

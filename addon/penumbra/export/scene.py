@@ -9,8 +9,7 @@ from .. import passes
 from . import camera, images, lights, mesh, nodes, particles, properties, rounds
 from .motion import identity_of
 
-# Types of objects that evaluate to a mesh.
-_MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+# Curves, surfaces, texts and metaballs come as meshes of their own beside them, as instances of an object of the same name.
 # Hair curves and point clouds, which are strands and balls.
 _ROUNDS = {"CURVES", "POINTCLOUD"}
 # Keys have 63 bits.
@@ -25,9 +24,9 @@ class Exporter:
         self.scene = scene
         self.images = {}
         self.warnings = []
-        # Keys of the shapes that the engine has, and of the hair of each object.
+        # Keys of the shapes that the engine has, and of those each object has, by its name.
         self._meshes = set()
-        self._hair = {}
+        self._shapes_of = {}
         # Keys of the materials that the engine has and that nothing but an edit of theirs makes others of.
         self._known_materials = set()
         self._moves = False
@@ -51,7 +50,8 @@ class Exporter:
             if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
                 self._meshes.discard(_key(data, self._asked))
             if isinstance(edited, bpy.types.Object):
-                self._meshes -= self._hair.pop(edited.name_full, set())
+                # What its meshes of before lay at may be where those of now lie.
+                self._meshes -= self._shapes_of.pop(edited.name_full, set())
         if isinstance(edited, bpy.types.Material):
             self._known_materials.discard(edited.original.session_uid)
         elif isinstance(edited, bpy.types.Image):
@@ -145,7 +145,7 @@ class Exporter:
         """True for what has a shape that the view layer's filter lets through."""
         if obj.type == "CURVES":
             return self._layer.use_strand
-        return (obj.type in _MESHES or obj.type in _ROUNDS) and self._layer.use_solid
+        return (obj.type == "MESH" or obj.type in _ROUNDS) and self._layer.use_solid
 
     def _world(self, scene):
         """The view layer's own world, the scene's, or none."""
@@ -205,7 +205,7 @@ class Exporter:
                                        self._motion is not None):
                 return None
             self._meshes.add(key)
-            self._hair.setdefault(obj.name_full, set()).add(key)
+            self._shapes_of.setdefault(obj.name_full, set()).add(key)
         return key
 
     def _record(self, obj, shape, materials, parent):
@@ -234,26 +234,22 @@ class Exporter:
 
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
-        own = obj.type == "MESH" or obj.type in _ROUNDS
-        key = _key(obj.data, self._asked)
+        key, data = _key(obj.data, self._asked), obj.data
         self._used.add(key)
+        self._shapes_of.setdefault(obj.name_full, set()).add(key)
         if key in self._meshes:
             return key
-        data = obj.data if own else obj.to_mesh()
         try:
             if obj.type in _ROUNDS:
                 if not rounds.hand_over(self.scene, key, data, self._motion is not None, self._asked):
                     return None
-            elif data is None or not data.polygons:
+            elif not data.polygons:
                 return None
             else:
                 mesh.hand_over(self.scene, key, data, self._asked)
         except ValueError as error:
             self.warnings.append(f"{obj.name}: {error}; it is left out")
             return None
-        finally:
-            if not own:
-                obj.to_mesh_clear()
         self._meshes.add(key)
         return key
 
