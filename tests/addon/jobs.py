@@ -65,10 +65,51 @@ def _render(path, view_layer_passes=()):
     bpy.ops.render.render(write_still=True)
 
 
+def _all_kinds():
+    """What there has to be for every pass to have something: things that glow, refract, mirror, move and catch shadows, of
+    numbers and light groups of their own, and an AOV."""
+    import scenes
+
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    scenes.world(0.3)
+    glass = scenes.material("Glass", "ShaderNodeBsdfGlass", Roughness=0.3)
+    metal = scenes.material("Metal", "ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3, 1.0), Roughness=0.3)
+    glow = scenes.material("Glow", "ShaderNodeEmission", Strength=3.0)
+    for i, (material, x) in enumerate(((glass, -1.6), (metal, 1.6), (glow, 2.6))):
+        material.pass_index = i + 2
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, location=(x, -0.5, 0.5))
+        bpy.context.object.pass_index = i + 5
+        bpy.context.object.data.materials.append(material)
+    # A pane before the lamp: light comes straight through.
+    bpy.ops.mesh.primitive_plane_add(size=0.8, location=(-1.0, -2.5, 0.6), rotation=(1.4, 0.0, 0.0))
+    bpy.context.object.data.materials.append(glass)
+    bpy.context.object.pass_index = 5
+    cube = bpy.data.objects["Cube"]
+    for frame, x in ((0, -0.5), (2, 0.5)):
+        cube.location.x = x
+        cube.keyframe_insert("location", frame=frame)
+    bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.0, -2.0, 0.05))
+    bpy.context.object.is_shadow_catcher = True
+    bpy.ops.mesh.primitive_cube_add(size=0.3, location=(0.1, -2.2, 0.5))
+    own = scenes.material("Own", "ShaderNodeBsdfDiffuse")
+    bpy.context.object.data.materials.append(own)
+    output = own.node_tree.nodes.new("ShaderNodeOutputAOV")
+    output.aov_name, output.inputs["Color"].default_value = "Place", (0.2, 0.4, 0.6, 1.0)
+    aov = layer.aovs.add()
+    aov.name, aov.type = "Place", "COLOR"
+    for group, holder in (("key", bpy.data.objects["Area"]), ("fill", scene.world)):
+        layer.lightgroups.add(name=group)
+        holder.lightgroup = group
+    layer.cycles.use_pass_shadow_catcher = True
+
+
 def f12(folder):
-    """One picture of a lit cube with every pass; returns the path."""
-    _scene(spp=16)
+    """One picture with every pass; returns the path, and the table of passes."""
+    import penumbra
+
+    _scene((96, 72), spp=32)
     _room()
+    _all_kinds()
     layer = bpy.context.view_layer
     for name in dir(layer):
         if name.startswith("use_pass_") and isinstance(getattr(layer, name), bool):
@@ -77,7 +118,7 @@ def f12(folder):
         setattr(layer.penumbra, name, True)
     path = os.path.join(folder, "f12.exr")
     _render(path)
-    return path
+    return [path, penumbra.passes()]
 
 
 def effects(folder):
