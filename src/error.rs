@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Result with the crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -103,6 +104,30 @@ impl Error {
     /// A file that could not be read or written.
     pub fn io(path: &Path, what: impl Into<String>, source: std::io::Error) -> Self {
         Self::Io { place: Place::file(path), what: what.into(), source }
+    }
+}
+
+/// A wish that work be stopped: whoever has it holds one end, the work asks at the other.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Wishes it, for good.
+    pub fn wish(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// True once it is wished.
+    pub fn is_wished(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// The end of work that is not wanted any more.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`] once it is wished.
+    pub fn check(&self) -> Result<()> {
+        if self.is_wished() { Err(Error::Cancelled) } else { Ok(()) }
     }
 }
 

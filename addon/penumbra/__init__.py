@@ -4,14 +4,14 @@ What happens here is copying: properties by their names into one JSON document, 
 arrays (export/), pictures back into Blender's passes (engine.py). What they mean is decided in Rust.
 """
 
-from . import engine, files, lent, loaded, panels, properties
+from . import engine, files, lamps, lent, loaded, panels, properties
 
 # Blender's glTF exporter looks for it here.
 from .files import glTF2ExportUserExtension
 
 __all__ = ["glTF2ExportUserExtension", "register", "unregister"]
 
-MODULES = (properties, engine, panels, lent, files)
+MODULES = (properties, engine, lamps, panels, lent, files)
 
 
 def register():

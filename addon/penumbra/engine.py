@@ -1,5 +1,6 @@
 """Blender's render engine: F12, animations, background renders."""
 
+import os
 import traceback
 
 import bpy
@@ -18,6 +19,10 @@ _PREVIEW_INTERVAL = 0.1
 VIEWPORTS = {}
 # What the last render of each scene simulated, by the scene's name.
 PLANS = {}
+# What went wrong in each viewport, so that it is told once and not at every redraw.
+_FAILED = {}
+# What an artist can mend; all else is a bug.
+_MENDABLE = (ValueError, OSError, NotImplementedError)
 
 
 def _shortcuts(scene):
@@ -48,10 +53,9 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         try:
             self._render(depsgraph)
         except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
-            message = str(error) or type(error).__name__
-            if not isinstance(error, (ValueError, OSError, NotImplementedError)):
-                message = f"Penumbra failed, which is a bug in it: {message}"
-                traceback.print_exc()
+            if isinstance(error, KeyboardInterrupt) and self._stopped():
+                return
+            message = _message(error)
             self.report({"ERROR"}, message)
             self.error_set(message)
 
@@ -68,14 +72,14 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
                 " its own camera"
             )
         self.update_stats("", "Penumbra: reading the scene")
-        exporter = Exporter(penumbra.Scene())
+        exporter = Exporter(penumbra.Scene(), self._stopped)
         exporter.export(depsgraph, size, self.camera_override, motion=self._motion(depsgraph))
         clashing = [
             f'the shader AOV "{name}" is left out: another pass has its name' for name in passes.clashing(view_layer)
         ]
         missing = [f"the pass {name} is not rendered yet; it is left out" for name in passes.missing(view_layer)]
         self._tell([*libraries.missing(), *clashing, *missing, *_shortcuts(scene), *exporter.warnings])
-        if self.test_break():
+        if self._stopped():
             return
 
         def show(picture):
@@ -94,6 +98,7 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         if not self.is_preview:
             PLANS[scene.name] = picture.plan
         self._fill(view_layer, picture)
+        self._stamp(view_layer, picture)
 
     def _motion(self, depsgraph):
         """What gathers the motion of a picture that is blurred, or has the vector pass; None for others."""
@@ -101,8 +106,8 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         if self.is_preview:
             return None
         if motion.is_on(scene, layer):
-            return motion.Motion(scene, self.frame_set, self.test_break)
-        return motion.Vectors(scene, self.frame_set, self.test_break) if layer.use_pass_vector else None
+            return motion.Motion(scene, self.frame_set, self._stopped)
+        return motion.Vectors(scene, self.frame_set, self._stopped) if layer.use_pass_vector else None
 
     def _settings(self, scene, view_layer):
         """The engine's keyword arguments: the scene's, or those of the small picture of a material, a light or a world."""
@@ -129,12 +134,16 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         try:
             work()
         except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
-            traceback.print_exc()
-            self.update_stats("Penumbra", str(error))
+            message, known = _message(error), self.as_pointer()
+            self.update_stats("Penumbra", message)
+            if _FAILED.get(known) != message:
+                _FAILED[known] = message
+                self.report({"ERROR"}, message)
 
     def __del__(self):
         """Blender frees the engine: its viewport ends with it."""
         try:
+            _FAILED.pop(self.as_pointer(), None)
             viewport = VIEWPORTS.pop(self.as_pointer(), None)
         except ReferenceError:
             viewport = None
@@ -156,6 +165,10 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
             if progress["error_target"] is not None or progress["error"] is not None:
                 text += f" | {_noise(progress)}"
             self.update_stats("", text)
+        return self._stopped()
+
+    def _stopped(self):
+        """True once the artist wants no picture any more."""
         return self.test_break()
 
     def _fill(self, view_layer, picture):
@@ -173,10 +186,26 @@ class PenumbraRenderEngine(bpy.types.RenderEngine):
         finally:
             self.end_result(result)
 
+    def _stamp(self, view_layer, picture):
+        """Says what Cryptomatte's ids mean, where files and the compositor's node have it from."""
+        result = self.get_result()
+        for name, value in picture.cryptomatte(view_layer.name):
+            result.stamp_data_add_field(name, value)
+
     def _tell(self, warnings):
         """Each warning in Blender's own reports, once; not at every change of a node for its preview."""
         for warning in [] if self.is_preview else warnings:
             self.report({"WARNING"}, warning)
+
+
+def _message(error):
+    """What to tell of an exception: where it is of a bug in the engine, so that it can be found there, too."""
+    message = str(error) or type(error).__name__
+    if isinstance(error, _MENDABLE):
+        return message
+    last = traceback.extract_tb(error.__traceback__)[-1:]
+    where = "".join(f" ({os.path.basename(frame.filename)}, line {frame.lineno})" for frame in last)
+    return f"Penumbra failed, which is a bug in it: {message}{where}"
 
 
 def _noise(progress):

@@ -2,28 +2,11 @@
 
 import bpy
 
-from . import engine, passes
-
-_ENGINE = "PENUMBRA"
-
-
-class _Panel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    COMPAT_ENGINES = {_ENGINE}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
-
-    def _split(self):
-        """The layout, names to the left as Blender's own panels have them."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout
+from . import engine, lamps, passes
+from .ui import Panel
 
 
-class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_sampling(Panel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_context = "render"
 
@@ -31,7 +14,7 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
         pass
 
 
-class PENUMBRA_PT_sampling_viewport(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_sampling_viewport(Panel, bpy.types.Panel):
     bl_label = "Viewport"
     bl_context = "render"
     bl_parent_id = "PENUMBRA_PT_sampling"
@@ -40,7 +23,7 @@ class PENUMBRA_PT_sampling_viewport(_Panel, bpy.types.Panel):
         self._split().prop(context.scene.penumbra, "viewport_spp", text="Samples")
 
 
-class PENUMBRA_PT_sampling_render(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_sampling_render(Panel, bpy.types.Panel):
     bl_label = "Render"
     bl_context = "render"
     bl_parent_id = "PENUMBRA_PT_sampling"
@@ -52,9 +35,12 @@ class PENUMBRA_PT_sampling_render(_Panel, bpy.types.Panel):
         column.prop(own, "spp", text="Max Samples" if own.error > 0.0 else "Samples")
         column.prop(own, "time", text="Time Limit")
         layout.prop(own, "adaptive", text="Adaptive")
+        known = layout.column()
+        known.active = not (own.error > 0.0 or own.adaptive)
+        known.prop(own, "use_noise_estimate", text="Show Noise")
 
 
-class PENUMBRA_PT_sampling_lights(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_sampling_lights(Panel, bpy.types.Panel):
     bl_label = "Lights"
     bl_context = "render"
     bl_parent_id = "PENUMBRA_PT_sampling"
@@ -66,7 +52,7 @@ class PENUMBRA_PT_sampling_lights(_Panel, bpy.types.Panel):
         layout.prop(own, "light_selection", text="Selection")
 
 
-class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_sampling_advanced(Panel, bpy.types.Panel):
     bl_label = "Advanced"
     bl_context = "render"
     bl_parent_id = "PENUMBRA_PT_sampling"
@@ -82,7 +68,7 @@ class PENUMBRA_PT_sampling_advanced(_Panel, bpy.types.Panel):
         layout.prop(own, "effects")
 
 
-class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_light_paths(Panel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -95,7 +81,7 @@ class PENUMBRA_PT_light_paths(_Panel, bpy.types.Panel):
         column.prop(own, "max_bounces")
 
 
-class _LightPathsPanel(_Panel):
+class _LightPathsPanel(Panel):
     """Settings of light paths that are Cycles' own."""
 
     bl_context = "render"
@@ -131,7 +117,7 @@ class PENUMBRA_PT_light_paths_caustics(_LightPathsPanel, bpy.types.Panel):
             ("caustics_refractive", "Refractive"))
 
 
-class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_ambient_occlusion(Panel, bpy.types.Panel):
     bl_label = "Ambient Occlusion"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -143,7 +129,7 @@ class PENUMBRA_PT_ambient_occlusion(_Panel, bpy.types.Panel):
             layout.prop(scene.world.light_settings, "distance")
 
 
-class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_motion_blur(Panel, bpy.types.Panel):
     bl_label = "Motion Blur"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -166,7 +152,7 @@ class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
             duration.prop(cycles, "rolling_shutter_duration")
 
 
-class PENUMBRA_PT_motion_blur_curve(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_motion_blur_curve(Panel, bpy.types.Panel):
     bl_label = "Shutter Curve"
     bl_context = "render"
     bl_parent_id = "PENUMBRA_PT_motion_blur"
@@ -182,7 +168,7 @@ class PENUMBRA_PT_motion_blur_curve(_Panel, bpy.types.Panel):
             row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
 
 
-class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_film(Panel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -198,7 +184,7 @@ class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
         layout.prop(scene.render, "film_transparent", text="Transparent")
 
 
-class PENUMBRA_PT_performance(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_performance(Panel, bpy.types.Panel):
     bl_label = "Performance"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
@@ -212,7 +198,7 @@ class PENUMBRA_PT_performance(_Panel, bpy.types.Panel):
         count.prop(render, "threads")
 
 
-class PENUMBRA_PT_effects(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_effects(Panel, bpy.types.Panel):
     """What the last render simulated, and because of what."""
 
     bl_label = "Effects"
@@ -240,7 +226,7 @@ class PENUMBRA_PT_effects(_Panel, bpy.types.Panel):
             line.label(text=row["because"])
 
 
-class PENUMBRA_PT_passes(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_passes(Panel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
 
@@ -248,7 +234,7 @@ class PENUMBRA_PT_passes(_Panel, bpy.types.Panel):
         pass
 
 
-class _Passes(_Panel):
+class _Passes(Panel):
     """Check boxes of passes: (heading, [(name of the property, text)]); Penumbra's own where Blender has none."""
 
     bl_context = "view_layer"
@@ -302,7 +288,7 @@ class PENUMBRA_PT_passes_light(_Passes, bpy.types.Panel):
     )
 
 
-class PENUMBRA_PT_passes_cryptomatte(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_passes_cryptomatte(Panel, bpy.types.Panel):
     bl_label = "Cryptomatte"
     bl_context = "view_layer"
     bl_parent_id = "PENUMBRA_PT_passes"
@@ -312,7 +298,7 @@ class PENUMBRA_PT_passes_cryptomatte(_Panel, bpy.types.Panel):
         bpy.types.VIEWLAYER_PT_layer_passes_cryptomatte.draw(self, context)
 
 
-class PENUMBRA_PT_passes_light_groups(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_passes_light_groups(Panel, bpy.types.Panel):
     bl_label = "Light Groups"
     bl_context = "view_layer"
     bl_parent_id = "PENUMBRA_PT_passes"
@@ -322,7 +308,7 @@ class PENUMBRA_PT_passes_light_groups(_Panel, bpy.types.Panel):
         bpy.types.VIEWLAYER_PT_layer_passes_lightgroups.draw(self, context)
 
 
-class PENUMBRA_PT_passes_aov(_Panel, bpy.types.Panel):
+class PENUMBRA_PT_passes_aov(Panel, bpy.types.Panel):
     bl_label = "Shader AOV"
     bl_context = "view_layer"
     bl_parent_id = "PENUMBRA_PT_passes"
@@ -343,6 +329,7 @@ PANELS = (
     PENUMBRA_PT_light_paths_clamping,
     PENUMBRA_PT_light_paths_caustics,
     PENUMBRA_PT_ambient_occlusion,
+    *lamps.PANELS,
     PENUMBRA_PT_motion_blur,
     PENUMBRA_PT_motion_blur_curve,
     PENUMBRA_PT_film,

@@ -63,6 +63,12 @@ class PenumbraSceneSettings(bpy.types.PropertyGroup):
         "use_animated_seed": bpy.props.BoolProperty(
             name="Use Animated Seed", description="Another seed, and so other noise, for every frame", default=False
         ),
+        "use_noise_estimate": bpy.props.BoolProperty(
+            name="Show Noise",
+            description="Tell the noise of the picture so far beside the time left; an estimate takes about a fifth more samples"
+            " for the same noise. With a noise target or adaptive sampling it is told anyway",
+            default=False,
+        ),
         "viewport_spp": bpy.props.IntProperty(
             name="Viewport Samples", description="Samples per pixel of the rendered viewport", default=256, min=1
         ),
@@ -82,6 +88,8 @@ def settings(scene, view_layer):
     """The engine's keyword arguments for a scene."""
     own = scene.penumbra
     result = {"passes": passes.chosen(view_layer)}
+    if own.use_noise_estimate and "error" not in result["passes"]:
+        result["passes"].append("error")
     for row in penumbra.settings():
         name = row["name"]
         if name in _BLENDERS:

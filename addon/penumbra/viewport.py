@@ -50,11 +50,7 @@ class Viewport:
             settings = properties.settings(scene, context.view_layer)
             settings.update(passes=["combined"], spp=scene.penumbra.viewport_spp, time=None, error=None, adaptive=False)
             changed, self.stale, self.view = self.stale, False, view
-            try:
-                self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)
-            except BaseException as error:  # noqa: BLE001  (a panic of the engine is no Exception)
-                self.engine.update_stats("Penumbra", str(error))
-                return
+            self.render.show(self.exporter.scene, json.dumps(view), changed, **settings)
         self._tell()
         picture = self.render.picture()
         if picture is not None:
@@ -89,7 +85,7 @@ class Viewport:
 
 
 def _view(context, depsgraph):
-    """The view as plain data: matrices and size, and border and lens of a camera's."""
+    """The view as plain data: matrices and size, and border, lens and panorama of a camera's."""
     region, data, space = context.region, context.region_data, context.space_data
     rows = lambda matrix: [list(row) for row in matrix]
     view = {
@@ -102,14 +98,23 @@ def _view(context, depsgraph):
     }
     scene = depsgraph.scene
     through = scene.camera if data.view_perspective == "CAMERA" else None
+    if view["orthographic"] and through is None:
+        # It begins at the point that it turns about, and shows as much before as behind.
+        view["clip_end"] *= 0.5
+        view["clip_start"] = -view["clip_end"]
     if through is not None and through.type == "CAMERA":
         own = camera.camera(through.evaluated_get(depsgraph))
+        frame = _frame(context, through, scene)
+        if "panorama" in own and frame is not None:
+            view["panorama"] = [own["panorama"], frame]
+            # Around it is nothing.
+            view["border"] = _rectangle(view["size"], frame)
         view["orthographic"] = own["type"] == "ORTHO"
         view["clip_start"], view["clip_end"] = own["clip_start"], own["clip_end"]
         if "dof" in own:
             view["dof"] = [own["dof"], own["lens"]]
         if scene.render.use_border:
-            view["border"] = _camera_border(context, through, scene)
+            view["border"] = _camera_border(context, frame, scene.render)
     elif space.use_render_border:
         edges = (space.render_border_min_x, space.render_border_min_y, space.render_border_max_x,
                  space.render_border_max_y)
@@ -119,15 +124,20 @@ def _view(context, depsgraph):
     return view
 
 
-def _camera_border(context, obj, scene):
-    """The border within the camera's frame, in pixels of the region."""
+def _frame(context, obj, scene):
+    """Left, lower, right and upper edge of the camera's frame in pixels of the region; None for one that is behind."""
     frame = [obj.matrix_world @ corner for corner in obj.data.view_frame(scene=scene)]
     corners = [location_3d_to_region_2d(context.region, context.region_data, corner) for corner in frame]
     if any(corner is None for corner in corners):
         return None
-    low = [min(corner[i] for corner in corners) for i in (0, 1)]
-    high = [max(corner[i] for corner in corners) for i in (0, 1)]
-    render = scene.render
+    return [end(corner[i] for corner in corners) for end in (min, max) for i in (0, 1)]
+
+
+def _camera_border(context, frame, render):
+    """The border within the camera's frame."""
+    if frame is None:
+        return None
+    low, high = frame[:2], frame[2:]
     edges = (render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y)
     size = (context.region.width, context.region.height)
     return _rectangle(size, [low[i % 2] + edge * (high[i % 2] - low[i % 2]) for i, edge in enumerate(edges)])

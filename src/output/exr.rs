@@ -179,20 +179,23 @@ fn describe(attributes: &mut LayerAttributes, metadata: &Metadata, options: &Opt
         let end = name.floor_char_boundary(255);
         set(attributes, &name[..end], &value);
     }
-    for manifest in &metadata.manifests {
-        describe_cryptomatte(attributes, manifest, options);
+    for (name, value) in metadata.manifests.iter().flat_map(|manifest| cryptomatte(manifest, &options.view_layer)) {
+        set(attributes, &name, &value);
     }
 }
 
-/// `cryptomatte/<key>/…`; the key is the first seven digits of the hash of the layer's full name.
-fn describe_cryptomatte(attributes: &mut LayerAttributes, manifest: &Manifest, options: &Options) {
-    let name = format!("{}.{}", options.view_layer, manifest.kind.layer());
+/// What a file says of a Cryptomatte, as names and texts: `cryptomatte/<key>/…`; the key is the first seven digits of the
+/// hash of the layer's full name.
+pub fn cryptomatte(manifest: &Manifest, view_layer: &str) -> [(String, String); 4] {
+    let name = format!("{view_layer}.{}", manifest.kind.layer());
     let key = format!("{:08x}", murmur3_32(name.as_bytes(), 0));
-    let mut add = |field: &str, value: &str| set(attributes, &format!("cryptomatte/{}/{field}", &key[..7]), value);
-    add("name", &name);
-    add("hash", "MurmurHash3_32");
-    add("conversion", "uint32_to_float32");
-    add("manifest", &manifest.to_json());
+    let fields = [
+        ("name", name),
+        ("hash", "MurmurHash3_32".into()),
+        ("conversion", "uint32_to_float32".into()),
+        ("manifest", manifest.to_json()),
+    ];
+    fields.map(|(field, value)| (format!("cryptomatte/{}/{field}", &key[..7]), value))
 }
 
 /// The texts in the header of a file's first part, by name.

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use penumbra::error::Stop;
 use penumbra::film::{Film, Picture};
 use penumbra::render::{Observer, Progress};
 
@@ -20,7 +21,7 @@ struct News {
 pub struct Mailbox {
     news: Mutex<News>,
     bell: Condvar,
-    cancelled: AtomicBool,
+    stop: Stop,
     /// A picture is wanted at the end of the next wave.
     wants_picture: AtomicBool,
 }
@@ -42,7 +43,12 @@ impl Mailbox {
 
     /// Stops the render soon.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.stop.wish();
+    }
+
+    /// What asks whether to stop before there is a render.
+    pub fn stop(&self) -> &Stop {
+        &self.stop
     }
 
     /// Asks for the picture as it is after the next wave.
@@ -80,6 +86,6 @@ impl Observer for Mailbox {
     }
 
     fn cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        self.stop.is_wished()
     }
 }

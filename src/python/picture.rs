@@ -128,6 +128,12 @@ impl Picture {
         Ok(PyArray1::from_vec(py, turned))
     }
 
+    /// What a file of the picture says of its Cryptomattes: [(name of the attribute, text)].
+    #[pyo3(signature = (view_layer="ViewLayer"))]
+    fn cryptomatte(&self, view_layer: &str) -> Vec<(String, String)> {
+        self.metadata.manifests.iter().flat_map(|manifest| exr::cryptomatte(manifest, view_layer)).collect()
+    }
+
     /// Writes all layers as a multi-layer OpenEXR file.
     #[pyo3(signature = (path, *, view_layer="ViewLayer".to_owned()))]
     fn save(&self, py: Python<'_>, path: PathBuf, view_layer: String) -> PyResult<()> {

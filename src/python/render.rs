@@ -7,7 +7,6 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyString, PyTuple};
 
-use super::exception;
 use super::job::{Watch, run};
 use super::picture::Picture;
 use super::scene::Scene;
@@ -19,13 +18,13 @@ use penumbra::job;
 use penumbra::job::resume::{self, Saver};
 use penumbra::plan::Plan;
 use penumbra::render::{Start, render_from};
-use penumbra::scene::prepare;
+use penumbra::scene::{Cache, prepare_with};
 use penumbra::settings::{SETTINGS, Settings};
 
 /// Where a scene comes from.
 enum Source<'py> {
     File(PathBuf),
-    Memory(PyRef<'py, Scene>),
+    Memory(&'py Scene),
 }
 
 /// Renders a scene: a path of a USD or glTF file, or a Scene.
@@ -33,7 +32,8 @@ enum Source<'py> {
 /// Settings are keyword arguments with the names of the command line (spp, time, passes, …); passes may
 /// be a list. `observer(progress)` is called on this thread at least 20 times a second with a dict of
 /// done, spp, target_spp, elapsed, remaining, error, error_at_end, error_target and to_target (or None where
-/// nothing is new), and stops the render by a true answer; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
+/// nothing is new), and stops the render by a true answer: the picture is as it is then, and KeyboardInterrupt is raised
+/// where there is none yet; `on_picture(picture)` gets the picture so far every `picture_interval` seconds.
 ///
 /// `state` names a file: the render goes on from what it holds, where it is there, as if it had never stopped, and
 /// leaves all that it takes to go on in it; with `checkpoint` that is saved every so many seconds, too. With `plan` the
@@ -60,7 +60,7 @@ pub fn render(
 ) -> PyResult<Picture> {
     let (settings, passes_given) = settings_of(settings)?;
     let source = match scene.cast::<Scene>() {
-        Ok(scene) => Source::Memory(scene.clone().try_borrow()?),
+        Ok(scene) => Source::Memory(scene.get()),
         Err(_) => Source::File(scene.extract::<PathBuf>().map_err(|_| {
             let kind = scene.get_type().name().map_or_else(|_| "this".into(), |name| name.to_string());
             PyTypeError::new_err(format!("a scene is a path or a penumbra.Scene, not {kind}"))
@@ -78,12 +78,11 @@ pub fn render(
     let vectors = settings.passes.needs(Quantity::Vector);
     let options = ImportOptions { frame, subdivision, variants, vectors, ..ImportOptions::default() };
     let half = settings.half;
-    let (name, read) = match &source {
-        Source::File(path) => (path.display().to_string(), py.detach(|| load(path, &options))),
-        Source::Memory(scene) => ("Blender".to_owned(), scene.read(py)),
-    };
-    let (desc, mut warnings) = read.map_err(|error| exception(&error))?;
     run(py, &watch, |mailbox| {
+        let (name, (desc, mut warnings)) = match &source {
+            Source::File(path) => (path.display().to_string(), load(path, &options)?),
+            Source::Memory(scene) => ("Blender".to_owned(), scene.read(mailbox.stop())?),
+        };
         let view = job::view(camera, size, &desc, &mut warnings);
         let settings = if passes_given { settings } else { job::with_own_passes(&settings, &desc, &mut warnings) };
         let identity = state.as_ref().map(|_| job::identity(&desc, &view, &settings)).unwrap_or_default();
@@ -92,7 +91,7 @@ pub fn render(
             None => None,
         };
         let authored = plan.then(|| desc.clone());
-        let prepared = prepare(desc, &view, &settings)?;
+        let prepared = prepare_with(desc, &view, &settings, &mut Cache::default().stopped_by(mailbox.stop()))?;
         let plan = authored.map(|desc| Plan::of(&desc, &prepared, &settings)).unwrap_or_default();
         warnings.extend(prepared.warnings.clone());
         let start = match found {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::exception;
 use penumbra::desc::SceneDesc;
-use penumbra::error::{Result, Warnings};
+use penumbra::error::{Result, Stop, Warnings};
 use penumbra::import::blender::{
     BlenderScene, Ends, ImageSource, LayerArray, MeshArrays, MovedPoints, pointiness, random_per_island,
 };
@@ -34,13 +34,11 @@ impl Scene {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The scene as authored, and what was told of it.
-    pub(super) fn read(&self, py: Python<'_>) -> Result<(SceneDesc, Warnings)> {
-        py.detach(|| {
-            let mut warnings = Warnings::new();
-            let desc = self.lock().scene(&mut warnings)?;
-            Ok((desc, warnings))
-        })
+    /// The scene as authored, and what was told of it, unless `stop` ends that.
+    pub(super) fn read(&self, stop: &Stop) -> Result<(SceneDesc, Warnings)> {
+        let mut warnings = Warnings::new();
+        let desc = self.lock().scene_unless(stop, &mut warnings)?;
+        Ok((desc, warnings))
     }
 }
 
@@ -54,6 +52,11 @@ impl Scene {
     /// Takes in everything but materials, meshes, images in memory and placements: JSON.
     fn set_document(&self, json: &str) -> PyResult<()> {
         self.lock().set_document(json).map_err(|error| exception(&error))
+    }
+
+    /// Takes in what was edited of the document: JSON of its lights, its world or its images.
+    fn edit_document(&self, json: &str) -> PyResult<()> {
+        self.lock().edit_document(json).map_err(|error| exception(&error))
     }
 
     /// Takes in the material `key`: JSON.
@@ -178,15 +181,16 @@ impl Scene {
         self.lock().remove_shape(key);
     }
 
-    /// Takes in the bytes of a packed image file.
-    fn set_image_bytes(&self, name: &str, bytes: &[u8]) {
-        self.lock().set_image(name, ImageSource::Encoded(bytes.to_vec()));
+    /// Takes in the bytes of a packed image file, or of one tile's.
+    #[pyo3(signature = (name, bytes, tile=None))]
+    fn set_image_bytes(&self, name: &str, bytes: &[u8], tile: Option<u32>) {
+        self.lock().set_image(name, tile, ImageSource::Encoded(bytes.to_vec()));
     }
 
     /// Takes in pixels: float32, four per pixel, rows from the bottom; `linear` for linear values.
     fn set_image_pixels(&self, name: &str, width: u32, height: u32, pixels: Floats<'_>, linear: bool) -> PyResult<()> {
         let values = floats(&pixels)?.to_vec();
-        self.lock().set_image(name, ImageSource::Pixels { width, height, values, linear });
+        self.lock().set_image(name, None, ImageSource::Pixels { width, height, values, linear });
         Ok(())
     }
 

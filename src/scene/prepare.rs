@@ -79,10 +79,10 @@ pub fn prepare(desc: SceneDesc, view: &View, settings: &Settings) -> Result<Prep
     prepare_with(desc, view, settings, &mut Cache::default())
 }
 
-/// The same, with what `cache` has kept of the scene before.
+/// The same, with what `cache` has kept of the scene before, until it is [stopped](Cache::stopped_by).
 ///
 /// # Errors
-/// As [`prepare`].
+/// As [`prepare`], and [`Error::Cancelled`] once it is stopped.
 pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache: &mut Cache) -> Result<Prepared> {
     desc::check(&desc)?;
     let mut warnings = Warnings::new();
@@ -104,6 +104,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
     let start = Instant::now();
     let Materials { list: materials, textures, names, domes, lamps, background } =
         materials::prepare(&mut desc, settings, passes.aovs(), cache, &mut warnings);
+    cache.stop.check()?;
     let textures = Arc::new(textures);
     let background_aovs = background.map(|(program, outputs)| {
         let surroundings = Surroundings { program, textures: textures.clone(), camera, origin };
@@ -116,7 +117,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         geometry: settings.shadow_terminator_geometry_offset,
         shading: settings.shadow_terminator_shading_offset,
     };
-    let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, terminator, cache, &mut warnings);
+    let mut geometry = geometry::prepare(&desc, origin, shutter, &materials, &links, terminator, cache, &mut warnings)?;
     times.push(("geometry", start.elapsed()));
     let start = Instant::now();
     let vectors = passes.needs(Quantity::Vector) && !tell_of_no_vectors(&desc, &camera_desc, shutter, &mut warnings);
@@ -147,6 +148,7 @@ pub fn prepare_with(mut desc: SceneDesc, view: &View, settings: &Settings, cache
         LightSelection::Uniform => Strategy::Uniform,
     };
     let of_groups = passes.needs_shadow_of_groups();
+    cache.stop.check()?;
     let lights = LightSet::chosen_by(by, lights, geometry.bvh.bounds(), links.receiver_classes(), &of_groups);
     times.push(("lights", start.elapsed()));
     let scene = Scene {

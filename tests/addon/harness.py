@@ -3,7 +3,7 @@
     python harness.py JOB ANSWER.json [ARGUMENT...]
     python harness.py serve
 
-JOB is a function of jobs.py, motion_jobs.py or pass_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where
+JOB is a function of jobs.py, motion_jobs.py, pass_jobs.py or ui_jobs.py. The extension is expected in BLENDER_USER_RESOURCES, where
 install.py put it. With `serve` jobs come line by line, as JSON lists [LOG, JOB, ANSWER.json, ARGUMENT...], each in a Blender
 as new; what it prints goes to LOG, and a line says that it is done.
 """
@@ -25,10 +25,11 @@ def do(job, target, *arguments):
     import jobs
     import motion_jobs
     import pass_jobs
+    import ui_jobs
 
     answer = {}
     try:
-        module = next(module for module in (jobs, motion_jobs, pass_jobs) if hasattr(module, job))
+        module = next(module for module in (jobs, motion_jobs, pass_jobs, ui_jobs) if hasattr(module, job))
         answer["result"] = getattr(module, job)(*arguments)
     except Exception as error:
         answer["error"] = f"{type(error).__name__}: {error}"

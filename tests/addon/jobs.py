@@ -65,10 +65,51 @@ def _render(path, view_layer_passes=()):
     bpy.ops.render.render(write_still=True)
 
 
+def _all_kinds():
+    """What there has to be for every pass to have something: things that glow, refract, mirror, move and catch shadows, of
+    numbers and light groups of their own, and an AOV."""
+    import scenes
+
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    scenes.world(0.3)
+    glass = scenes.material("Glass", "ShaderNodeBsdfGlass", Roughness=0.3)
+    metal = scenes.material("Metal", "ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3, 1.0), Roughness=0.3)
+    glow = scenes.material("Glow", "ShaderNodeEmission", Strength=3.0)
+    for i, (material, x) in enumerate(((glass, -1.6), (metal, 1.6), (glow, 2.6))):
+        material.pass_index = i + 2
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, location=(x, -0.5, 0.5))
+        bpy.context.object.pass_index = i + 5
+        bpy.context.object.data.materials.append(material)
+    # A pane before the lamp: light comes straight through.
+    bpy.ops.mesh.primitive_plane_add(size=0.8, location=(-1.0, -2.5, 0.6), rotation=(1.4, 0.0, 0.0))
+    bpy.context.object.data.materials.append(glass)
+    bpy.context.object.pass_index = 5
+    cube = bpy.data.objects["Cube"]
+    for frame, x in ((0, -0.5), (2, 0.5)):
+        cube.location.x = x
+        cube.keyframe_insert("location", frame=frame)
+    bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.0, -2.0, 0.05))
+    bpy.context.object.is_shadow_catcher = True
+    bpy.ops.mesh.primitive_cube_add(size=0.3, location=(0.1, -2.2, 0.5))
+    own = scenes.material("Own", "ShaderNodeBsdfDiffuse")
+    bpy.context.object.data.materials.append(own)
+    output = own.node_tree.nodes.new("ShaderNodeOutputAOV")
+    output.aov_name, output.inputs["Color"].default_value = "Place", (0.2, 0.4, 0.6, 1.0)
+    aov = layer.aovs.add()
+    aov.name, aov.type = "Place", "COLOR"
+    for group, holder in (("key", bpy.data.objects["Area"]), ("fill", scene.world)):
+        layer.lightgroups.add(name=group)
+        holder.lightgroup = group
+    layer.cycles.use_pass_shadow_catcher = True
+
+
 def f12(folder):
-    """One picture of a lit cube with every pass; returns the path."""
-    _scene(spp=16)
+    """One picture with every pass; returns the path, and the table of passes."""
+    import penumbra
+
+    _scene((96, 72), spp=32)
     _room()
+    _all_kinds()
     layer = bpy.context.view_layer
     for name in dir(layer):
         if name.startswith("use_pass_") and isinstance(getattr(layer, name), bool):
@@ -77,7 +118,7 @@ def f12(folder):
         setattr(layer.penumbra, name, True)
     path = os.path.join(folder, "f12.exr")
     _render(path)
-    return path
+    return [path, penumbra.passes()]
 
 
 def effects(folder):
@@ -557,6 +598,88 @@ def viewport_edits(folder):
 
     for edit in (move, color, paint, reshape, delete):
         answer[edit.__name__] = viewport.show(edit)
+    viewport.render.stop()
+    return answer
+
+
+def _made_of_others():
+    """A curve, a text and a metaball, each before the camera: their objects."""
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    curve.dimensions, curve.bevel_depth, curve.use_fill_caps = "3D", 0.2, True
+    spline = curve.splines.new("POLY")
+    spline.points.add(3)
+    for i, point in enumerate(spline.points):
+        point.co = (i - 1.5, 0.0, 0.0, 1.0)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude = "abc", 0.1
+    ball = bpy.data.metaballs.new("Ball")
+    ball.elements.new().radius = 1.0
+    ball.resolution = ball.render_resolution
+    return [_add("Curve", curve, location=(0.0, 0.0, 0.8)), _add("Ball", ball, location=(-1.0, 1.0, 1.5)),
+            _add("Text", text, location=(0.5, -1.0, 0.5), rotation_euler=(1.5, 0.0, 0.0))]
+
+
+def glowing(folder):
+    """Curve, text and metaball that light a floor, and meshes of the same shape: paths of the pictures."""
+    import scenes
+
+    _scene((32, 24), spp=64)
+    scenes.world(0.0)
+    bpy.ops.mesh.primitive_plane_add(size=10)
+    objects, glow = _made_of_others(), scenes.material("Glow", "ShaderNodeEmission", Strength=5.0)
+    for obj in objects:
+        obj.data.materials.append(glow)
+    paths = [os.path.join(folder, f"{name}.exr") for name in ("others", "meshes")]
+    _render(paths[0])
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    for obj in objects:
+        shape = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), depsgraph=depsgraph)
+        _add(f"{obj.name} as mesh", shape, matrix_world=obj.matrix_world.copy())
+    for obj in objects:
+        bpy.data.objects.remove(obj)
+    _render(paths[1])
+    return paths
+
+
+def viewport_shapes(folder):
+    """Edits of curves, texts, metaballs and what geometry nodes make, again and again: each the mean that the viewport shows
+    and that of one which begins afresh."""
+    _scene((32, 24))
+    _room()
+    curve, ball, text = (obj.data for obj in _made_of_others())
+    tree = bpy.data.node_groups.new("Grow", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    nodes = [tree.nodes.new(name) for name in ("NodeGroupInput", "GeometryNodeInstanceOnPoints", "NodeGroupOutput")]
+    box = tree.nodes.new("GeometryNodeMeshCube")
+    for first, second in zip(nodes, nodes[1:]):
+        tree.links.new(first.outputs[0], second.inputs[0])
+    tree.links.new(box.outputs[0], nodes[1].inputs["Instance"])
+    box.inputs["Size"].default_value = (0.2, 0.2, 0.2)
+    bpy.data.objects["Cube"].modifiers.new("Grow", "NODES").node_group = tree
+
+    def bend(step):
+        curve.splines[0].points[1].co.z = 0.2 * (step + 1)
+
+    def swell(step):
+        ball.elements[0].radius = 1.0 + 0.1 * (step + 1)
+
+    def thicken(step):
+        text.extrude = 0.1 * (step + 2)
+
+    def grow(step):
+        box.inputs["Size"].default_value = [0.2 + 0.1 * (step + 1)] * 3
+
+    viewport, answer = _Viewport((32, 24)), {}
+    viewport.show()
+    for edit in (bend, swell, thicken, grow):
+        answer[edit.__name__] = []
+        # Memory that an edit frees is taken again by one of the next.
+        for step in range(5):
+            shown = viewport.show(lambda: edit(step))[1]
+            afresh = _Viewport((32, 24))
+            answer[edit.__name__].append([shown, afresh.show()[1]])
+            afresh.render.stop()
     viewport.render.stop()
     return answer
 

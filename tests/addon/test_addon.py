@@ -30,13 +30,34 @@ def test_the_zip_is_an_extension(extension):
     assert not any("__pycache__" in name for name in names)
 
 
+# Of what share of the pixels a pass has something, where that is neither all nor unknown: what it shows is a part of the picture.
+_SHARES = {
+    "Emission": (0.002, 0.1), "Vector": (0.005, 0.5), "Place": (0.002, 0.1), "Object Index": (0.01, 0.3),
+    "Material Index": (0.01, 0.3), "Transmission Color": (0.005, 0.3), "Transmission Direct": (0.0005, 0.2),
+    "Transmission Indirect": (0.002, 0.3), "Glossy Color": (0.01, 1.0), "Environment": (0.01, 0.9),
+}
+
+
 def test_f12_fills_every_pass(blender, tmp_path):
-    path, _ = blender.run("f12", tmp_path)
+    (path, passes), _ = blender.run("f12", tmp_path)
     layers = read(path)
+    for row in passes:
+        names = [row["layer"].replace("<group>", group).replace("<name>", "Place") for group in ("key", "fill")]
+        if row["name"].startswith("crypto_"):
+            names = [f"{row['layer']}{level:02d}" for level in range(3)]
+        for name in dict.fromkeys(names):
+            channels = [layers[f"ViewLayer.{name}.{c}"] for c in row["channels"]]
+            assert np.isfinite(channels).all(), name
+            least, most = _SHARES.get(name, (0.0 if name.endswith(("01", "02")) else 0.0005, 1.0))
+            share = np.mean(np.abs(channels).max(axis=0) > 0.0)
+            assert least <= share <= most, (name, share)
+    assert set(np.unique(layers["ViewLayer.Object Index.X"])) == {0.0, 5.0, 6.0, 7.0}
+    assert set(np.unique(layers["ViewLayer.Material Index.X"])) == {0.0, 2.0, 3.0, 4.0}
+    assert (layers["ViewLayer.Debug Sample Count.X"] == 32.0).all()
+    for name in ("Shadow", "Shadow_key", "Shadow_fill", "Shadow Catcher"):
+        assert layers[f"ViewLayer.{name}.R"].min() < 0.7 and layers[f"ViewLayer.{name}.R"].max() >= 0.99, name
     combined = np.dstack([layers[f"ViewLayer.Combined.{c}"] for c in "RGBA"])
     assert np.isfinite(combined).all() and combined[..., :3].mean() > 0.01
-    for name in ("Shadow.R", "Diffuse Direct Unshadowed.R", "Ambient Occlusion.R", "Depth.Z", "Normal.X", "Position.X"):
-        assert f"ViewLayer.{name}" in layers, sorted(layers)
     # Diffuse Direct is the shadow times what would be without.
     direct = layers["ViewLayer.Diffuse Direct.R"]
     product = layers["ViewLayer.Shadow.R"] * layers["ViewLayer.Diffuse Direct Unshadowed.R"]
@@ -254,6 +275,23 @@ def test_only_what_changed_crosses_for_the_viewport(blender, tmp_path):
         assert np.abs(np.subtract(after, before)).max() > 1e-3, means
     red, green, _ = np.subtract(means[2], means[1])
     assert red > green
+
+
+def test_curves_texts_and_metaballs_are_there_once(blender, tmp_path):
+    """What glows is as bright as a mesh of its shape: placed twice, half of its own light would be in its way."""
+    paths, _ = blender.run("glowing", tmp_path)
+    found, expected = (np.dstack([read(path)[f"ViewLayer.Combined.{c}"] for c in "RGB"]) for path in paths)
+    assert expected.mean() > 0.1
+    noise = np.std(found - expected) / np.sqrt(expected[..., 0].size)
+    assert abs(found.mean() - expected.mean()) <= 0.002 * expected.mean() + 4.0 * noise
+
+
+def test_edits_of_curves_texts_metaballs_and_geometry_nodes_are_shown(blender, tmp_path):
+    answer, _ = blender.run("viewport_shapes", tmp_path)
+    for name, steps in answer.items():
+        for shown, afresh in steps:
+            assert np.allclose(shown, afresh, rtol=1e-5), (name, steps)
+        assert np.ptp([shown[0] for shown, _ in steps]) > 1e-4, (name, steps)
 
 
 def test_a_world_by_the_camera_is_that_of_each_view(blender, tmp_path):

@@ -16,17 +16,24 @@ def path_of(image, user):
 
 def describe(image, path):
     """What the document says of an image."""
+    tiled = image.source == "TILED"
+    # Pixels of tiles are not to be had but from files.
+    painted = image.is_dirty and not tiled
     return {
         "path": path,
         "colorspace": image.colorspace_settings.name,
         "alpha_mode": image.alpha_mode,
-        "tiles": [tile.number for tile in image.tiles] if image.source == "TILED" else [],
-        "in_memory": image.packed_file is not None or image.source == "GENERATED" or image.is_dirty,
+        "tiles": [tile.number for tile in image.tiles] if tiled else [],
+        "in_memory": bool(image.packed_files) or image.source == "GENERATED" or painted,
     }
 
 
 def hand_over(scene, name, image):
     """Gives an image that is in memory to the engine's scene."""
+    if image.source == "TILED":
+        for file in image.packed_files:
+            scene.set_image_bytes(name, file.packed_file.data, tile=file.tile_number)
+        return
     if image.packed_file is not None and not image.is_dirty:
         scene.set_image_bytes(name, image.packed_file.data)
         return

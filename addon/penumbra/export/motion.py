@@ -85,8 +85,8 @@ class Motion:
             flowing = None if modifier else self._flowing(obj)
             if flowing is not None:
                 self._points[key] = flowing
-            # Of a mesh that geometry nodes instance it is those nodes that are asked.
-            elif modifier or obj.type != "MESH" or obj.original.is_deform_modified(self._scene, "RENDER"):
+            # Of a mesh that geometry nodes instance it is those nodes that are asked; that of a curve or text is not a mesh's.
+            elif modifier or obj.original.type != "MESH" or obj.original.is_deform_modified(self._scene, "RENDER"):
                 self._shapes[key] = (identity, modifier, times)
 
     def _flowing(self, obj):
@@ -233,13 +233,7 @@ def _points(instance, modifier, render):
     if modifier:
         obj = instance.instance_object if instance.is_instance else obj
         return particles.points(obj, obj.modifiers[modifier], render).astype(np.float32).reshape(-1)
-    if obj.type in mesh.WITH_ATTRIBUTES:
-        return mesh.positions(obj.data)
-    data = obj.to_mesh()
-    try:
-        return mesh.positions(data)
-    finally:
-        obj.to_mesh_clear()
+    return mesh.positions(obj.data)
 
 
 # Cycles looks a shutter's curve up at so many times.

@@ -1,16 +1,16 @@
 """The depsgraph, walked once."""
 
 import json
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 
 from .. import passes
-from . import camera, images, lights, mesh, nodes, particles, properties, rounds
+from . import camera, edits, images, lights, mesh, nodes, particles, properties, rounds
 from .motion import identity_of
 
-# Types of objects that evaluate to a mesh.
-_MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+# Curves, surfaces, texts and metaballs come as meshes of their own beside them, as instances of an object of the same name.
 # Hair curves and point clouds, which are strands and balls.
 _ROUNDS = {"CURVES", "POINTCLOUD"}
 # Keys have 63 bits.
@@ -19,25 +19,33 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class Exporter:
-    """Fills an engine's Scene from a depsgraph. One lives as long as its render."""
+    """Fills an engine's Scene from a depsgraph. One lives as long as its render.
 
-    def __init__(self, scene):
-        self.scene = scene
+    `stopped` says whether the artist wants no picture any more: KeyboardInterrupt, as the engine itself raises.
+    """
+
+    def __init__(self, scene, stopped=lambda: False):
+        self.scene, self._stopped = scene, stopped
         self.images = {}
         self.warnings = []
-        # Keys of the shapes that the engine has, and of the hair of each object.
+        # Keys of the shapes that the engine has, and of those each object has, by its name.
         self._meshes = set()
-        self._hair = {}
+        self._shapes_of = {}
         # Keys of the materials that the engine has and that nothing but an edit of theirs makes others of.
         self._known_materials = set()
         self._moves = False
-        # Names of the attributes that Attribute nodes ask for.
-        self._asked = frozenset()
+        # Names of the attributes that Attribute nodes ask for, and what they ask of objects.
+        self._asked, self._properties = frozenset(), []
+        self._handed = edits.Handed()
 
     def update(self, depsgraph, size, space):
         """Hands over what changed since the last time, for a viewport of `space`."""
         for update in depsgraph.updates:
             self._forget(update)
+        few = edits.small(depsgraph.updates, self._handed)
+        if few is not None and self._knows_all(few, depsgraph.scene_eval):
+            self._hand_over_few(few, depsgraph)
+            return
         self.export(depsgraph, size, space=space)
         for key in self._meshes - self._used:
             self.scene.remove_shape(key)
@@ -51,7 +59,8 @@ class Exporter:
             if isinstance(data, (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)):
                 self._meshes.discard(_key(data, self._asked))
             if isinstance(edited, bpy.types.Object):
-                self._meshes -= self._hair.pop(edited.name_full, set())
+                # What its meshes of before lay at may be where those of now lie.
+                self._meshes -= self._shapes_of.pop(edited.name_full, set())
         if isinstance(edited, bpy.types.Material):
             self._known_materials.discard(edited.original.session_uid)
         elif isinstance(edited, bpy.types.Image):
@@ -63,6 +72,43 @@ class Exporter:
         elif isinstance(edited, bpy.types.NodeTree) and not edited.is_embedded_data:
             # A group is part of any number of materials.
             self._known_materials.clear()
+
+    def _knows_all(self, few, scene):
+        """True where no material asks for more than was handed over, no object has values that go by its place, and lamps
+        are known by their names alone."""
+        if not all(name in scene.objects for name in few.lamps):
+            return False
+        if not few.materials:
+            return not self._properties
+        return (nodes.attributes_asked(), nodes.properties_asked()) == (self._asked, self._properties) and not (
+            self._properties and few.moved
+        )
+
+    def _hand_over_few(self, few, depsgraph):
+        """Hands over what is edited and nothing else."""
+        # Those of before may be gone.
+        self._layer, self._scene = depsgraph.view_layer, depsgraph.scene_eval
+        if few.moved:
+            for obj in few.moved:
+                self._matrices[self._handed.instances[obj.name_full]] = [x for row in obj.matrix_world for x in row]
+            self._hand_over_placements()
+        for material in few.materials:
+            key = material.original.session_uid
+            if key in self._material_index:
+                self._hand_over_material(key, material)
+        if few.materials:
+            self.scene.set_materials(self._materials)
+        for name in few.lamps:
+            obj = self._scene.objects[name]
+            lamp = lights.lamp(SimpleNamespace(object=obj, matrix_world=obj.matrix_world), self)
+            self._link(lamp, obj)
+            self._lights[self._handed.lamps[name]] = lamp
+        edited = {"images": self.images}
+        if few.lamps:
+            edited["lights"] = self._lights
+        if few.world and self._world(self._scene) is not None:
+            edited["world"] = lights.world(self._world(self._scene), self)
+        self.scene.edit_document(self._json(edited))
 
     def export(self, depsgraph, size, camera_object=None, space=None, motion=None):
         """Hands over everything of `depsgraph` for a picture of `size` pixels; of `space`, what it shows.
@@ -85,13 +131,20 @@ class Exporter:
         self._used = set()
         # Names of the modifiers whose hair is a shape.
         self._modifiers = {}
+        handed = self._handed = edits.Handed()
         of_instance, matrices, random_ids, lamps = [], [], [], {}
         for instance in depsgraph.object_instances:
+            if self._stopped():
+                raise KeyboardInterrupt("stopped")
             obj = instance.object
             if not _shown(instance, space):
                 continue
             found = []
+            if instance.is_instance:
+                handed.crowd |= {obj.name_full, instance.parent.name_full}
             if instance.show_self and obj.type == "LIGHT":
+                handed.lamps[obj.name_full] = len(self._lights)
+                handed.lamps_of.setdefault(obj.data.name_full, set()).add(obj.name_full)
                 self._lights.append(lights.lamp(instance, self))
                 self._links.append((self._lights[-1], obj))
                 if motion is not None:
@@ -106,6 +159,9 @@ class Exporter:
                 first, shapes = len(of_instance), [self._objects[index]["mesh"] for index in found]
                 indices = range(first, first + len(found))
                 motion.note(instance, indices, matrix, [(key, self._modifiers.get(key)) for key in shapes])
+            if found:
+                first = len(of_instance)
+                handed.instances[obj.name_full] = slice(first, first + len(found))
             for index in found:
                 of_instance.append(index)
                 matrices.append(matrix)
@@ -135,17 +191,21 @@ class Exporter:
         self.scene.set_document(self._json(document))
         self.scene.set_materials(self._materials)
         self._known_materials &= set(self._materials)
-        matrices = np.asarray(matrices, np.float32).reshape(-1)
-        self.scene.set_instances(np.asarray(of_instance, np.uint32), matrices, np.asarray(random_ids, np.uint32))
+        self._of_instance, self._random_ids = np.asarray(of_instance, np.uint32), np.asarray(random_ids, np.uint32)
+        self._matrices = np.asarray(matrices, np.float32).reshape(-1, 16)
+        self._hand_over_placements()
         if motion is not None:
             motion.hand_over(self.scene)
             self.warnings += sorted(motion.warnings)
+
+    def _hand_over_placements(self):
+        self.scene.set_instances(self._of_instance, self._matrices.reshape(-1), self._random_ids)
 
     def _is_rendered(self, obj):
         """True for what has a shape that the view layer's filter lets through."""
         if obj.type == "CURVES":
             return self._layer.use_strand
-        return (obj.type in _MESHES or obj.type in _ROUNDS) and self._layer.use_solid
+        return (obj.type == "MESH" or obj.type in _ROUNDS) and self._layer.use_solid
 
     def _world(self, scene):
         """The view layer's own world, the scene's, or none."""
@@ -205,13 +265,16 @@ class Exporter:
                                        self._motion is not None):
                 return None
             self._meshes.add(key)
-            self._hair.setdefault(obj.name_full, set()).add(key)
+            self._shapes_of.setdefault(obj.name_full, set()).add(key)
         return key
 
     def _record(self, obj, shape, materials, parent):
         """Says of an object with one of its shapes, instanced by `parent` or not, what it is; returns the record's index."""
         if self._override is not None:
             materials = [self._override] * max(len(materials), 1)
+        for material in materials:
+            if material is not None:
+                self._handed.users.setdefault(material.original.session_uid, set()).add(obj.name_full)
         top = obj
         while top.parent is not None:
             top = top.parent
@@ -234,26 +297,22 @@ class Exporter:
 
     def _shape(self, obj):
         """Hands over the object's mesh once; returns its key, or None where there is nothing to see."""
-        own = obj.type == "MESH" or obj.type in _ROUNDS
-        key = _key(obj.data, self._asked)
+        key, data = _key(obj.data, self._asked), obj.data
         self._used.add(key)
+        self._shapes_of.setdefault(obj.name_full, set()).add(key)
         if key in self._meshes:
             return key
-        data = obj.data if own else obj.to_mesh()
         try:
             if obj.type in _ROUNDS:
                 if not rounds.hand_over(self.scene, key, data, self._motion is not None, self._asked):
                     return None
-            elif data is None or not data.polygons:
+            elif not data.polygons:
                 return None
             else:
                 mesh.hand_over(self.scene, key, data, self._asked)
         except ValueError as error:
             self.warnings.append(f"{obj.name}: {error}; it is left out")
             return None
-        finally:
-            if not own:
-                obj.to_mesh_clear()
         self._meshes.add(key)
         return key
 
@@ -333,11 +392,13 @@ class Exporter:
             self.images[name] = images.describe(image, path)
             if self.images[name]["in_memory"]:
                 images.hand_over(self.scene, name, image)
+            if image.source == "TILED" and image.is_dirty:
+                self.warnings.append(f"{image.name}: what is painted on its tiles counts once it is saved, or packed again")
         return name
 
     def object_matrix(self, obj):
         """World matrix of an object that a node refers to."""
-        self._moves = True
+        self._moves = self._handed.refers = True
         return [list(map(float, row)) for row in obj.matrix_world]
 
 

@@ -104,11 +104,11 @@ class Stamps(Exporter):
             record["path"] = self._relative(record["path"])
         return name
 
-    def set_image_bytes(self, name, data):
-        """Saves a packed file."""
+    def set_image_bytes(self, name, data, tile=None):
+        """Saves a packed file, or a tile's."""
         extension = os.path.splitext(self.images[name]["path"])[1] or _extension(data)
-        path = self._file(name, extension)
-        with open(path, "wb") as file:
+        path = self._file(name, extension if tile is None else f".<UDIM>{extension}")
+        with open(path.replace("<UDIM>", str(tile)), "wb") as file:
             file.write(data)
 
     def set_image_pixels(self, name, width, height, pixels, is_float):

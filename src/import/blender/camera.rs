@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::document::{CameraData, DofData, RenderData};
+use super::document::{CameraData, DofData, PanoramaData, RenderData};
 use super::motion;
 use super::transform::affine;
 use crate::desc::{CameraDesc, LensDesc, Motion, ProjectionDesc};
@@ -61,14 +61,13 @@ fn projection(
     let projection = match data.r#type.as_str() {
         "ORTHO" => orthographic,
         "PERSP" => perspective(),
-        "PANO" if data.panorama.panorama_type == "EQUIRECTANGULAR" => ProjectionDesc::Equirectangular {
-            longitude: [data.panorama.longitude_min, data.panorama.longitude_max],
-            latitude: [data.panorama.latitude_min, data.panorama.latitude_max],
-        },
         "PANO" => {
-            let kind = &data.panorama.panorama_type;
-            warnings.push(place, format!("{kind} panoramas are not supported: taken as equirectangular"));
-            ProjectionDesc::Equirectangular { longitude: [-PI, PI], latitude: [-0.5 * PI, 0.5 * PI] }
+            let (longitude, latitude) = equirectangular(&data.panorama).unwrap_or_else(|| {
+                let kind = &data.panorama.panorama_type;
+                warnings.push(place, format!("{kind} panoramas are not supported: taken as equirectangular"));
+                ALL_AROUND
+            });
+            ProjectionDesc::Equirectangular { longitude, latitude }
         }
         other => {
             warnings.push(place, format!("a camera of the unknown type {other}: taken as a perspective one"));
@@ -76,6 +75,15 @@ fn projection(
         }
     };
     (projection, frame)
+}
+
+/// Longitudes and latitudes of all directions.
+pub(super) const ALL_AROUND: ([f64; 2], [f64; 2]) = ([-PI, PI], [-0.5 * PI, 0.5 * PI]);
+
+/// Longitudes and latitudes of a panorama; `None` for other kinds of it.
+pub(super) fn equirectangular(data: &PanoramaData) -> Option<([f64; 2], [f64; 2])> {
+    let edges = ([data.longitude_min, data.longitude_max], [data.latitude_min, data.latitude_max]);
+    (data.panorama_type == "EQUIRECTANGULAR").then_some(edges)
 }
 
 /// How it projects at other frames.

@@ -11,7 +11,7 @@ use super::colors::Space;
 use super::document::ImageData;
 use super::kept::{KeptImages, Version, Wanted};
 use crate::desc::{Blending, ColorSpace, Filter, ImageDesc, PixelData, TextureDesc, Wrap};
-use crate::error::{Error, Place, Result, Warnings};
+use crate::error::{Error, Place, Result, Stop, Warnings};
 use crate::import::image::{decode_image, load_image};
 
 /// An image that Blender holds in memory.
@@ -41,6 +41,9 @@ pub struct InMemory {
     pub revision: u64,
 }
 
+/// Images in memory by name and tile; none for those without tiles.
+pub type ImagesInMemory = HashMap<(String, Option<u32>), InMemory>;
+
 /// How a node looks at an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
@@ -55,7 +58,7 @@ pub struct Look {
 /// The images that nodes ask for; they are decoded by [`Images::finish`].
 pub struct Images<'a> {
     data: &'a HashMap<String, ImageData>,
-    in_memory: &'a HashMap<String, InMemory>,
+    in_memory: &'a ImagesInMemory,
     place: &'a Place,
     version: [u32; 3],
     /// Each image asked for.
@@ -67,7 +70,7 @@ impl<'a> Images<'a> {
     /// No image is asked for yet.
     pub fn new(
         data: &'a HashMap<String, ImageData>,
-        in_memory: &'a HashMap<String, InMemory>,
+        in_memory: &'a ImagesInMemory,
         place: &'a Place,
         version: [u32; 3],
     ) -> Self {
@@ -110,15 +113,24 @@ impl<'a> Images<'a> {
 
     /// All images and textures that were asked for, those of `kept` as they are there. One that can't be
     /// read is told, and is magenta as in Cycles.
-    pub fn finish(mut self, kept: &mut KeptImages, warnings: &mut Warnings) -> (Vec<Arc<ImageDesc>>, Vec<TextureDesc>) {
+    ///
+    /// # Errors
+    /// Once `stop` is wished; nothing is kept then.
+    pub fn finish(
+        mut self,
+        kept: &mut KeptImages,
+        stop: &Stop,
+        warnings: &mut Warnings,
+    ) -> Result<(Vec<Arc<ImageDesc>>, Vec<TextureDesc>)> {
         let decode = |wanted: &Wanted| {
             let version = self.version_of(&wanted.name, wanted.tile);
             if let Some(known) = version.as_ref().and_then(|version| kept.get(wanted, version)) {
                 return (version, Ok(known));
             }
-            (version, self.decode(wanted).map(Arc::new))
+            (version, stop.check().and_then(|()| self.decode(wanted)).map(Arc::new))
         };
         let decoded: Vec<(Option<Version>, Result<Arc<ImageDesc>>)> = self.wanted.par_iter().map(decode).collect();
+        stop.check()?;
         let good = self.wanted.iter().zip(&decoded).filter_map(|(key, (version, image))| {
             let (Some(version), Ok(image)) = (version, image) else { return None };
             Some((key.clone(), version.clone(), image.clone()))
@@ -136,7 +148,7 @@ impl<'a> Images<'a> {
             .collect();
         self.tell_spaces(warnings);
         self.share(&images);
-        (images, self.textures)
+        Ok((images, self.textures))
     }
 
     /// Lets textures look up the same image where two readings of one turned out to be alike.
@@ -165,7 +177,7 @@ impl<'a> Images<'a> {
         let data = &self.data[name];
         let space = space(data);
         if data.in_memory {
-            let revision = self.in_memory.get(name)?.revision;
+            let revision = self.in_memory.get(&(name.to_owned(), tile))?.revision;
             return Some(Version::Memory { revision, space });
         }
         Version::of_file(&path_of(data, tile), space)
@@ -176,7 +188,7 @@ impl<'a> Images<'a> {
         let mut space = space(data);
         let place = self.place.at(name);
         let name: Arc<str> = name.as_str().into();
-        let image = match self.in_memory.get(&*name).map(|image| &image.source) {
+        let image = match self.in_memory.get(&(name.to_string(), *tile)).map(|image| &image.source) {
             _ if !data.in_memory => {
                 let path = path_of(data, *tile);
                 if path.is_empty() {
@@ -265,7 +277,7 @@ mod tests {
             values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0],
             linear: true,
         };
-        let in_memory = [("a".to_owned(), InMemory { source: pixels, revision: 0 })].into();
+        let in_memory = [(("a".to_owned(), None), InMemory { source: pixels, revision: 0 })].into();
         let place = Place::default();
         let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         assert_eq!(images.texture("a", None, look()), Some(0));
@@ -274,7 +286,7 @@ mod tests {
         assert_eq!(images.texture("a", None, Look { wrap: Wrap::Clamp, ..look() }), Some(2));
         assert_eq!(images.texture("c", None, look()), None);
         let mut warnings = Warnings::new();
-        let (images, textures) = images.finish(&mut KeptImages::default(), &mut warnings);
+        let (images, textures) = images.finish(&mut KeptImages::default(), &Stop::default(), &mut warnings).unwrap();
         assert_eq!(textures.iter().map(|t| t.image).collect::<Vec<_>>(), [0, 1, 0]);
         // The top row comes first.
         assert_eq!(images[0].pixels.get(0), 1.0);
@@ -291,7 +303,7 @@ mod tests {
         let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
         images.texture("wood", None, look());
         let mut warnings = Warnings::new();
-        images.finish(&mut KeptImages::default(), &mut warnings);
+        images.finish(&mut KeptImages::default(), &Stop::default(), &mut warnings).unwrap();
         assert!(warnings.iter().next().unwrap().what.contains("/no/wood.png"));
     }
 
@@ -301,8 +313,8 @@ mod tests {
             [("a".into(), ImageData { in_memory: true, colorspace: colorspace.into(), ..ImageData::default() })].into()
         };
         let pixels = ImageSource::Pixels { width: 1, height: 1, values: vec![1.0, 0.0, 0.0, 0.4], linear: false };
-        let (in_memory, place) =
-            ([("a".to_owned(), InMemory { source: pixels, revision: 0 })].into(), Place::default());
+        let of_tile = |tile| (("a".to_owned(), tile), InMemory { source: pixels.clone(), revision: 0 });
+        let (in_memory, place) = ([None, Some(1002)].map(of_tile).into(), Place::default());
         let mut kept = KeptImages::default();
         kept.turn_on();
         let mut read = |colorspace: &str| {
@@ -311,7 +323,7 @@ mod tests {
             images.texture("a", None, look());
             images.texture("a", Some(1002), look());
             let mut warnings = Warnings::new();
-            let image = images.finish(&mut kept, &mut warnings).0.remove(0);
+            let image = images.finish(&mut kept, &Stop::default(), &mut warnings).unwrap().0.remove(0);
             (image, warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
         };
         let (image, said) = read("Filmic Log");
@@ -334,10 +346,10 @@ mod tests {
         let mut kept = KeptImages::default();
         kept.turn_on();
         let mut read = |value: f32, revision: u64| {
-            let in_memory = [("a".to_owned(), InMemory { source: source(value), revision })].into();
+            let in_memory = [(("a".to_owned(), None), InMemory { source: source(value), revision })].into();
             let mut images = Images::new(&data, &in_memory, &place, [5, 0, 0]);
             images.texture("a", None, look());
-            images.finish(&mut kept, &mut Warnings::new()).0.remove(0)
+            images.finish(&mut kept, &Stop::default(), &mut Warnings::new()).unwrap().0.remove(0)
         };
         let first = read(0.25, 0);
         assert!(Arc::ptr_eq(&first, &read(0.25, 0)));

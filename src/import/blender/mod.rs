@@ -29,8 +29,8 @@ mod view;
 mod world;
 
 pub use document::{
-    CameraData, Document, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData, PanoramaData, RenderData,
-    VisibilityData, WorldData,
+    CameraData, Document, DocumentEdit, DofData, ImageData, LightData, LinkData, MaterialData, ObjectData,
+    PanoramaData, RenderData, VisibilityData, WorldData,
 };
 pub use image::ImageSource;
 pub use islands::random_per_island;

@@ -3,8 +3,8 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
-use super::document::{Document, MaterialData};
-use super::image::{ImageSource, Images, InMemory};
+use super::document::{Document, DocumentEdit, MaterialData};
+use super::image::{ImageSource, Images, ImagesInMemory, InMemory};
 use super::kept::KeptImages;
 use super::layers::UvSets;
 use super::light::LampShader;
@@ -15,7 +15,7 @@ use super::rounds::{Ends, NamedRounds};
 use super::transform::affine_of_floats;
 use super::{camera, light, material, nodes, random, rounds, world};
 use crate::desc::{InstanceDesc, LightLinks, ObjectInfo, SceneDesc, ShapeRef};
-use crate::error::{Error, Place, Result, Warnings};
+use crate::error::{Error, Place, Result, Stop, Warnings};
 
 /// Everything that the add-on has handed over so far.
 #[derive(Debug, Default)]
@@ -24,7 +24,7 @@ pub struct BlenderScene {
     materials: HashMap<u64, Arc<MaterialData>>,
     meshes: HashMap<u64, NamedMesh>,
     rounds: HashMap<u64, NamedRounds>,
-    images: HashMap<String, InMemory>,
+    images: ImagesInMemory,
     /// How many images have been handed over.
     revisions: u64,
     kept: KeptImages,
@@ -54,6 +54,16 @@ impl BlenderScene {
         let materials = std::mem::take(&mut self.document.materials);
         self.document = serde_json::from_str(json).map_err(|error| self.unparsable("description", &error))?;
         self.document.materials = materials;
+        Ok(())
+    }
+
+    /// Takes in those parts of the document that were edited.
+    ///
+    /// # Errors
+    /// JSON that is no [`DocumentEdit`].
+    pub fn edit_document(&mut self, json: &str) -> Result<()> {
+        let edit: DocumentEdit = serde_json::from_str(json).map_err(|error| self.unparsable("edit", &error))?;
+        edit.apply(&mut self.document);
         Ok(())
     }
 
@@ -161,9 +171,9 @@ impl BlenderScene {
         self.kept.turn_on();
     }
 
-    /// Takes in an image that the document says is in memory.
-    pub fn set_image(&mut self, name: &str, image: ImageSource) {
-        self.images.insert(name.to_owned(), InMemory { source: image, revision: self.revisions });
+    /// Takes in an image that the document says is in memory, or a tile of it.
+    pub fn set_image(&mut self, name: &str, tile: Option<u32>, image: ImageSource) {
+        self.images.insert((name.to_owned(), tile), InMemory { source: image, revision: self.revisions });
         self.revisions += 1;
     }
 
@@ -205,6 +215,14 @@ impl BlenderScene {
     /// # Errors
     /// None so far: what can't be used is told and replaced.
     pub fn scene(&mut self, warnings: &mut Warnings) -> Result<SceneDesc> {
+        self.scene_unless(&Stop::default(), warnings)
+    }
+
+    /// The same, unless `stop` is wished meanwhile.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`] then.
+    pub fn scene_unless(&mut self, stop: &Stop, warnings: &mut Warnings) -> Result<SceneDesc> {
         let place = self.place();
         let mut desc = SceneDesc { place: place.clone(), ..SceneDesc::default() };
         let of_object = self.add_instances(&mut desc, warnings);
@@ -218,7 +236,7 @@ impl BlenderScene {
         let uv_sets = self.uv_sets();
         material::materials(document, &mut images, &uv_sets, &mut desc, warnings);
         self.add_lights(&of_object, &mut desc, &mut images, warnings);
-        (desc.images, desc.textures) = images.finish(&mut self.kept, warnings);
+        (desc.images, desc.textures) = images.finish(&mut self.kept, stop, warnings)?;
         Ok(desc)
     }
 

@@ -19,7 +19,7 @@ use super::light::LampShader;
 use super::transform::affine;
 use super::{camera, light, nodes, world};
 use crate::desc::{CameraDesc, ImageDesc, LightDesc, LightKind, ProjectionDesc, RenderDesc, SceneDesc};
-use crate::error::{Place, Warnings};
+use crate::error::{Place, Stop, Warnings};
 use crate::math::{DAffine3, DMat3};
 
 /// What this build reads.
@@ -257,7 +257,9 @@ impl Stamp {
         let mut images = Images::new(&self.images, &in_memory, place, self.blender);
         let result = read(&mut images, warnings);
         let first = all.len() as u32;
-        all.extend(images.finish(&mut KeptImages::default(), warnings).0);
+        // Nothing stops it.
+        let found = images.finish(&mut KeptImages::default(), &Stop::default(), warnings);
+        all.extend(found.map(|(images, _)| images).unwrap_or_default());
         (result, first)
     }
 }

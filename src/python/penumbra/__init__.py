@@ -31,7 +31,8 @@ def render(scene, **keywords):
     subdivision, variants : as on the command line
     observer : called with a dict (done, spp, target_spp, elapsed, remaining; error, error_at_end,
         error_target, to_target where an error is asked for, else None) or None at least 20 times
-        a second; a true answer stops the render, and the picture so far is returned
+        a second; a true answer stops the render, and the picture so far is returned, or, where
+        nothing was rendered yet, KeyboardInterrupt raised
     plan : True for a list of effects, with what called for them, in the picture's `plan`
     on_picture, picture_interval : called with the Picture so far every so many seconds
 

@@ -1,12 +1,12 @@
 //! What an earlier preparation has built and a later one can use: shapes with their trees, images with
-//! their pyramids.
+//! their pyramids; and whether the one that is under way is still wanted.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::bvh::Blas;
 use crate::desc::{DomeShader, ImageDesc, MeshDesc, RoundsDesc, SceneDesc, TextureDesc};
-use crate::error::Warnings;
+use crate::error::{Stop, Warnings};
 use crate::light::Dome;
 use crate::math::DAffine3;
 use crate::scene::shutter::Shutter;
@@ -44,6 +44,8 @@ impl DomeParts {
 #[derive(Default)]
 pub struct Cache {
     on: bool,
+    /// Asked before each mesh, image and tree.
+    pub(super) stop: Stop,
     /// That of what is kept of shapes that move.
     shutter: Option<Shutter>,
     /// By address, which is that of the description that the entry holds.
@@ -58,6 +60,11 @@ impl Cache {
     /// One that keeps things; the default keeps nothing, so that a single render holds no memory longer.
     pub fn new() -> Self {
         Self { on: true, ..Self::default() }
+    }
+
+    /// The same, for preparations that `stop` ends.
+    pub fn stopped_by(self, stop: &Stop) -> Self {
+        Self { stop: stop.clone(), ..self }
     }
 
     /// Forgets shapes that move where what was kept of them is for another shutter.
@@ -101,7 +108,7 @@ impl Cache {
 
     /// Keeps those images of `desc` that are wanted and forgets all others.
     pub(super) fn keep_images(&mut self, desc: &SceneDesc, wanted: &[bool], ready: &[ReadyImage]) {
-        if !self.on {
+        if !self.on || self.stop.is_wished() {
             return;
         }
         let wanted = desc.images.iter().zip(ready).zip(wanted).filter(|(_, wanted)| **wanted);
@@ -111,7 +118,7 @@ impl Cache {
     /// Keeps what is used of `ready`, which is that of the meshes, then of the strands and balls of `desc`,
     /// and forgets all else.
     pub(super) fn keep(&mut self, desc: &SceneDesc, used: &[bool], ready: &[Ready]) {
-        if !self.on {
+        if !self.on || self.stop.is_wished() {
             return;
         }
         let used = used.iter().zip(ready).map(|(used, ready)| used.then(|| ready.clone()));

@@ -8,7 +8,7 @@ use super::cache::{Cache, Ready};
 use super::links::Links;
 use crate::bvh::{self, Blas, Bvh};
 use crate::desc::{self, InstanceDesc, MeshDesc, RoundsDesc, SceneDesc, ShapeRef, TerminatorDesc};
-use crate::error::Warnings;
+use crate::error::{Result, Warnings};
 use crate::math::{Bounds, Cluster, DAffine3, DVec3, MovingTransform, Times, Vec2, Vec3};
 use crate::scene::shutter::{Keys, Shutter};
 use crate::scene::{Inside, Instance, Material, mask};
@@ -31,6 +31,9 @@ pub struct Geometry {
 }
 
 /// Prepares all shapes that are placed, in parallel; `terminator` is that of objects which have none of their own.
+///
+/// # Errors
+/// A preparation that is stopped.
 pub fn prepare(
     desc: &SceneDesc,
     origin: DVec3,
@@ -40,7 +43,7 @@ pub fn prepare(
     terminator: TerminatorDesc,
     cache: &mut Cache,
     warnings: &mut Warnings,
-) -> Geometry {
+) -> Result<Geometry> {
     let index = |shape: ShapeRef| match shape {
         ShapeRef::Mesh(i) => i as usize,
         ShapeRef::Rounds(i) => desc.meshes.len() + i as usize,
@@ -52,20 +55,24 @@ pub fn prepare(
     cache.forget_motion_of_other(shutter);
     let meshes = desc.meshes.par_iter().zip(&used).map(|(desc, used)| {
         cache.mesh(desc).unwrap_or_else(|| {
+            let wanted = *used && !cache.stop.is_wished();
             let (mesh, blas) =
-                if *used { prepare_mesh(desc, shutter) } else { (Mesh::default(), Blas::build(&[], &[])) };
+                if wanted { prepare_mesh(desc, shutter) } else { (Mesh::default(), Blas::build(&[], &[])) };
             (Shape::Mesh(Arc::new(mesh)), Arc::new(blas))
         })
     });
     let rounds = desc.rounds.par_iter().zip(&used[desc.meshes.len()..]).map(|(desc, used)| {
         cache.rounds(desc).unwrap_or_else(|| {
+            let wanted = *used && !cache.stop.is_wished();
             let (rounds, blas) =
-                if *used { prepare_rounds(desc, shutter) } else { (Rounds::default(), Blas::build(&[], &[])) };
+                if wanted { prepare_rounds(desc, shutter) } else { (Rounds::default(), Blas::build(&[], &[])) };
             (Shape::Rounds(Arc::new(rounds)), Arc::new(blas))
         })
     });
     let prepared: Vec<Ready> = meshes.chain(rounds).collect();
     cache.keep(desc, &used, &prepared);
+    // Of a preparation that is stopped nothing is kept, and nobody sees what is missing.
+    cache.stop.check()?;
     let (shapes, blases): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
     let default_material = materials.len() as u32 - 1;
     let (mut instances, mut boxes, mut placed) = (Vec::new(), Vec::new(), Vec::new());
@@ -105,7 +112,8 @@ pub fn prepare(
         let alone = absorbing.iter().map(|&i| boxes[i as usize].clone()).collect();
         (Bvh::build(blases.clone(), alone), absorbing)
     });
-    Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides, absorbing }
+    cache.stop.check()?;
+    Ok(Geometry { shapes, instances, placed, bvh: Bvh::build(blases, boxes), insides, absorbing })
 }
 
 /// Boxes are so much larger than what most of their points span only where a few of them are far away.

@@ -79,6 +79,9 @@ pub fn prepare(
     let mut emissive = Emissive::new(shared);
     for (index, (instance, &placed)) in geometry.instances.iter_mut().zip(&geometry.placed).enumerate() {
         let of = &desc.instances[placed as usize];
+        if cache.stop.is_wished() {
+            break;
+        }
         if !instance.materials.iter().any(|&m| materials[m as usize].emits()) {
             continue;
         }

@@ -47,6 +47,33 @@ pub struct Document {
     pub objects: Vec<ObjectData>,
 }
 
+/// Those parts of a [`Document`] that an artist edits again and again; one that is absent stays as it is.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct DocumentEdit {
+    /// The world.
+    pub world: Option<WorldData>,
+    /// All lamps.
+    pub lights: Option<Vec<LightData>>,
+    /// All images.
+    pub images: Option<HashMap<String, ImageData>>,
+}
+
+impl DocumentEdit {
+    /// Puts the parts in the place of those of `document`.
+    pub fn apply(self, document: &mut Document) {
+        if self.world.is_some() {
+            document.world = self.world;
+        }
+        if let Some(lights) = self.lights {
+            document.lights = lights;
+        }
+        if let Some(images) = self.images {
+            document.images = images;
+        }
+    }
+}
+
 /// A matrix that changes nothing.
 const IDENTITY: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];

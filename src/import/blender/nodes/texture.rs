@@ -39,7 +39,7 @@ pub fn environment<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, output: &str) -> Val
     of_texel(flow, at, texel, output)
 }
 
-/// The texels at coordinates with v upwards; `None` for a node without an image.
+/// The texels at coordinates with v upwards, magenta where a tile is missing; `None` for a node without an image.
 fn lookup<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, uv: ValueId) -> Option<ValueId> {
     let tiles = flow.images.data(at.node.text("image")).map(|data| data.tiles.clone()).unwrap_or_default();
     if tiles.is_empty() {
@@ -47,21 +47,26 @@ fn lookup<'a>(flow: &mut Flow<'a, '_>, at: At<'a>, uv: ValueId) -> Option<ValueI
         let uv = flow.graph.upside_down(uv);
         return Some(flow.graph.image(texture, uv));
     }
-    // Tile 1001 + i + 10 j covers the unit square at (i, j).
+    // Tile 1001 + i + 10 j covers the unit square at (i, j); as in Cycles, the first ones go on to -1.
     let floor = flow.graph.math(Math::Floor, &[uv]);
     let within = flow.graph.subtract(uv, floor);
     let within = flow.graph.upside_down(within);
-    let (i, j) = (flow.graph.place(floor, 0), flow.graph.place(floor, 1));
+    let whole = flow.graph.math(Math::Truncate, &[uv]);
+    let (i, j) = (flow.graph.place(whole, 0), flow.graph.place(whole, 1));
     let rows = flow.graph.scale(j, 10.0);
     let here = flow.graph.add(i, rows);
-    let mut value = flow.graph.number(0.0);
+    let missing = flow.graph.constant([1.0, 0.0, 1.0, 1.0]);
+    let mut value = missing;
     for tile in tiles {
         let Some(texture) = texture(flow, at, Some(tile)) else { continue };
         let texel = flow.graph.image(texture, within);
         let number = flow.graph.number(f64::from(tile) - 1001.0);
         value = flow.graph.apply(Function::IfEqual, &[here, number, texel, value]);
     }
-    Some(value)
+    // There are ten in a row.
+    let [first, last] = [0.0, 9.0].map(|number| flow.graph.number(number));
+    let within_row = flow.graph.math(Math::Clamp, &[i, first, last]);
+    Some(flow.graph.apply(Function::IfEqual, &[i, within_row, value, missing]))
 }
 
 /// The texture of a node's image, or of a tile of it.

@@ -50,7 +50,7 @@ pub(super) fn images(
         .enumerate()
         .map(|(i, image)| {
             let mut warnings = Warnings::new();
-            if !wanted[i] {
+            if !wanted[i] || cache.stop.is_wished() {
                 return (None, warnings);
             }
             if let Some(known) = cache.image(image) {
