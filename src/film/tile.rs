@@ -233,11 +233,15 @@ impl Tile {
         true
     }
 
-    /// Keeps what the ray through the pixel's centre met; nothing happens where no pass needs it.
+    /// Keeps what the ray through the pixel's centre met; nothing happens where no pass needs it. What lies beyond the
+    /// largest float is left out, and counted as a sample that is.
     pub fn set_first_hit(&mut self, x: u32, y: u32, hit: FirstHit) {
         let pixel = self.index(x, y);
         if let Some(place) = self.first_hits.get_mut(pixel) {
-            *place = hit;
+            match hit.depth.is_finite() && hit.position.is_finite() {
+                true => *place = hit,
+                false => self.non_finite.note(SampleId { x, y, index: 0 }),
+            }
         }
     }
 

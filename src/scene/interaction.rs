@@ -59,7 +59,9 @@ fn along(ray: &Ray, t: f32, it: &Interaction) -> Vec3 {
         return it.p;
     }
     let aside = ray.o + way - it.p;
-    it.p + (aside - it.ng * aside.dot(it.ng))
+    let p = it.p + (aside - it.ng * aside.dot(it.ng));
+    // Near the largest float differences overflow.
+    if p.is_finite() { p } else { it.p }
 }
 
 impl Interaction {
