@@ -59,6 +59,6 @@ impl Scene {
     /// The geometry in render space at `hit`, where `ray` leaves an inside, as if seen from outside: `wo` goes on along
     /// the ray. The width of what is seen is that of `cone`.
     pub fn coming_out(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
-        self.interaction(&Ray { d: -ray.d, ..*ray }, hit, RayCone { spread: 0.0, ..cone })
+        self.interaction_by(&Ray { d: -ray.d, ..*ray }, hit, RayCone { spread: 0.0, ..cone })
     }
 }

@@ -42,10 +42,16 @@ pub struct Interaction {
 impl Scene {
     /// The geometry at `hit`, which `ray` with unit direction and footprint `cone` has found.
     pub fn interaction(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
+        let it = self.interaction_by(ray, hit, cone);
+        Interaction { p: along(ray, hit.t, &it), ..it }
+    }
+
+    /// The same by what `hit` says alone, where `ray` is in another space.
+    pub(super) fn interaction_by(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> Interaction {
         let instance = &self.instances[hit.instance as usize];
         let it = Interaction::on(self.shape(instance), instance, hit.primitive, [hit.u, hit.v], -ray.d, ray.time);
         let footprint = cone.at(hit.t) / it.wo.dot(it.ng).abs().max(0.05);
-        Interaction { instance: hit.instance, footprint, p: along(ray, hit.t, &it), ..it }
+        Interaction { instance: hit.instance, footprint, ..it }
     }
 }
 

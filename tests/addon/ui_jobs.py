@@ -280,16 +280,22 @@ def packed_tiles(folder):
         files[tile] = image.filepath_raw = os.path.join(folder, f"tile.{tile}.png")
         image.file_format = "PNG"
         image.save()
-    tiles = bpy.data.images.load(files[1001])
-    tiles.source, tiles.filepath_raw = "TILED", os.path.join(folder, "tile.<UDIM>.png")
-    for tile in (1002, 1011):
-        if tile not in [known.number for known in tiles.tiles]:
-            tiles.tiles.new(tile)
+    images = []
+    for packed in (False, True):
+        tiles = bpy.data.images.load(files[1001])
+        tiles.source, tiles.filepath_raw = "TILED", os.path.join(folder, "tile.<UDIM>.png")
+        for tile in (1002, 1011):
+            if tile not in [known.number for known in tiles.tiles]:
+                tiles.tiles.new(tile)
+        if packed:
+            tiles.pack()
+            tiles.tiles.new(1012)
+        images.append(tiles)
     # From -1 to 2 across and up.
     glow = scenes.material("Glow", "ShaderNodeEmission")
     tree = glow.node_tree
     mapping, texture = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexImage")
-    texture.image, texture.interpolation = tiles, "Closest"
+    texture.interpolation = "Closest"
     mapping.inputs["Scale"].default_value, mapping.inputs["Location"].default_value = (3, 3, 1), (-1, -1, 0)
     tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], mapping.inputs["Vector"])
     tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
@@ -298,12 +304,10 @@ def packed_tiles(folder):
     bpy.ops.mesh.primitive_plane_add(size=3.0)
     bpy.context.object.data.materials.append(glow)
     paths = []
-    for packed in (False, True):
+    for packed, texture.image in enumerate(images):
         if packed:
-            tiles.pack()
             for path in files.values():
                 os.remove(path)
-            tiles.tiles.new(1012)
         for engine in ("CYCLES", "PENUMBRA"):
             scene.render.engine = engine
             paths.append(os.path.join(folder, f"{engine.lower()}-{packed}.exr"))

@@ -4,6 +4,7 @@ mod assets;
 mod materialx;
 mod nodes;
 mod noise;
+mod open_pbr;
 mod preview;
 
 use std::path::Path;
