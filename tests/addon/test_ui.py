@@ -103,7 +103,6 @@ def test_tiles_of_an_image_are_looked_up_in_files_and_packed(blender, tmp_path):
         assert np.abs(found - expected).max() < 1e-3
         # Rows from the top: blue, red and green tiles, magenta where none is. Left of and below 0 the first ones go on.
         wall = found[4::8, 4::8]
-        print(ours, wall.tolist())
         assert np.allclose(wall[0], [[0, 0, 1], [0, 0, 1], [1, 0, 1]], atol=1e-3)
         assert np.allclose(wall[1:], [[[1, 0, 0], [1, 0, 0], [0, 1, 0]]] * 2, atol=1e-3)
     assert "Traceback" not in output

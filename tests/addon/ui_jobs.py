@@ -305,9 +305,6 @@ def packed_tiles(folder):
     bpy.context.object.data.materials.append(glow)
     paths = []
     for packed, texture.image in enumerate(images):
-        if packed:
-            for path in files.values():
-                os.remove(path)
         for engine in ("CYCLES", "PENUMBRA"):
             scene.render.engine = engine
             paths.append(os.path.join(folder, f"{engine.lower()}-{packed}.exr"))

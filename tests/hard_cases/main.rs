@@ -15,9 +15,9 @@ mod light;
 mod material;
 mod numbers;
 mod page;
+mod random;
 mod row;
 #[path = "../support/scene.rs"]
 #[allow(dead_code, reason = "each test binary uses a part")]
 mod scene;
 mod truth;
-mod wild;

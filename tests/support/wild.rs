@@ -53,6 +53,10 @@ impl Bytes<'_> {
         *first
     }
 
+    fn coin(&mut self) -> bool {
+        self.byte() & 1 == 0
+    }
+
     fn below(&mut self, n: usize) -> usize {
         usize::from(self.byte()) % n
     }
@@ -127,7 +131,7 @@ pub fn scene(data: &[u8]) -> SceneDesc {
         1 => ProjectionDesc::Orthographic { half_width: bytes.number(), half_height: bytes.number() },
         _ => ProjectionDesc::Equirectangular { longitude: bytes.numbers(), latitude: bytes.numbers() },
     };
-    if bytes.byte() % 2 == 0 {
+    if bytes.coin() {
         [camera.clip_near, camera.clip_far] = bytes.numbers();
         camera.lens = Some(LensDesc::round(bytes.number(), bytes.number()));
         camera.transform = bytes.transform();
@@ -152,13 +156,11 @@ fn material(bytes: &mut Bytes<'_>, scene: &mut Builder) -> MaterialDesc {
     }
     if asks & 2 != 0 {
         material.alpha = bytes.scalar();
-        material.alpha_mode =
-            if bytes.byte() % 2 == 0 { AlphaMode::Blend } else { AlphaMode::Mask { cutoff: bytes.number() } };
+        material.alpha_mode = if bytes.coin() { AlphaMode::Blend } else { AlphaMode::Mask { cutoff: bytes.number() } };
     }
     if asks & 4 != 0 {
         let (thickness, attenuation_distance, attenuation_color) = (bytes.scalar(), bytes.number(), bytes.numbers());
-        material.volume =
-            Some(VolumeDesc { thickness, attenuation_distance, attenuation_color, adds: bytes.byte() % 2 == 0 });
+        material.volume = Some(VolumeDesc { thickness, attenuation_distance, attenuation_color, adds: bytes.coin() });
     }
     if asks & 8 != 0 {
         material.subsurface = Some(SubsurfaceDesc {
@@ -207,13 +209,13 @@ fn texture(bytes: &mut Bytes<'_>, scene: &mut Builder) -> TextureRef {
 
 fn lamp(bytes: &mut Bytes<'_>, images: usize) -> LightKind {
     let radiance = bytes.numbers();
-    let image = (images > 0 && bytes.byte() % 2 == 0).then(|| bytes.below(images) as u32);
+    let image = (images > 0 && bytes.coin()).then(|| bytes.below(images) as u32);
     let [width, height, spread] = bytes.numbers();
     match bytes.byte() % 7 {
         0 => LightKind::Point { intensity: radiance },
-        1 => LightKind::Sphere { radius: width, radiance, facing: bytes.byte() % 2 == 0 },
-        2 => LightKind::Rect { width, height, radiance, spread, two_sided: bytes.byte() % 2 == 0, image },
-        3 => LightKind::Disk { width, height, radiance, spread, two_sided: bytes.byte() % 2 == 0 },
+        1 => LightKind::Sphere { radius: width, radiance, facing: bytes.coin() },
+        2 => LightKind::Rect { width, height, radiance, spread, two_sided: bytes.coin(), image },
+        3 => LightKind::Disk { width, height, radiance, spread, two_sided: bytes.coin() },
         4 => LightKind::Cylinder { radius: width, length: height, radiance },
         5 => LightKind::Distant { irradiance: radiance, angle: spread },
         _ => LightKind::Dome { radiance, image },
@@ -227,7 +229,7 @@ fn shaping(bytes: &mut Bytes<'_>) -> ShapingDesc {
         2 => Some(ConeDesc::Soft { angle: bytes.number(), softness: bytes.number() }),
         _ => None,
     };
-    let focus = if bytes.byte() % 4 == 0 { bytes.number() } else { 0.0 };
+    let focus = if bytes.below(4) == 0 { bytes.number() } else { 0.0 };
     ShapingDesc { cone, focus, ..ShapingDesc::default() }
 }
 
