@@ -248,8 +248,6 @@ _MOMENT = dict.fromkeys(("Depth", "Position", "Object Index", "Material Index"),
                         "ours is of the middle of the shutter, Cycles' of its first sample's random moment (docs/passes.md)")
 _FACETS = ("no direct light passes a closed ball; Cycles has some 10⁻⁶ of Combined where the smooth normal of a facet leans over its edge "
            "(none on flat facets, a thirteenth with four times as many)")
-_LEVEL = dict.fromkeys(("Combined", "Diffuse Color", "Glossy Light Direct", "Glossy Light Indirect"),
-                       "a Specular IOR Level of 0.8 is a specular_weight of 1.6 in OpenPBR, which is read as 1")
 _THIN_GLASS = "Blender's exporter writes glass without a volume, which in glTF is a film that does not refract"
 
 STAGES = {
@@ -274,7 +272,7 @@ STAGES = {
                               doors={"gltf": _THIN_GLASS}, passes={"all": {"Transmission Light Direct": _FACETS}}),
     "principled_grid": Stage(principled_grid, "six materials", lamps_alone=False, bounces=8,
                              doors={"gltf": _THIN_GLASS + ", and no tint of coats"},
-                             passes={"all": {"Transmission Light Direct": _FACETS}, "usd": _LEVEL}),
+                             passes={"all": {"Transmission Light Direct": _FACETS}}),
     "textured_and_bumpy": Stage(textured_and_bumpy, "image texture and bump"),
     "instances": Stage(scenes.instances, "instances of a mesh"),
     "depth_of_field": Stage(scenes.depth_of_field, "a lens wide open, five blades",
