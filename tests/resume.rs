@@ -500,7 +500,10 @@ fn a_killed_render_goes_on_from_its_checkpoint() {
         child.kill().unwrap();
         child.wait().unwrap();
         kills += 1;
-        assert!(!folder.has("a.exr"), "a picture that is not done");
+        // It may have come to its end between the look and the kill: what it has written is held to the whole below.
+        if folder.has("a.exr") {
+            break;
+        }
         assert!(round < 300, "it does not get on");
     }
     folder.done("whole.exr", &with(&[]));
