@@ -222,7 +222,8 @@ KNOWN = [
     "more than there is; Penumbra takes the reciprocal index.",
     "- Stretched microfacets are given what round ones of their mean width lose: white ones reflect up to 2 % more than there "
     "is near grazing along their wider direction, in Cycles as here.",
-    "- The steepest normal map leaves the ball 0.3 % darker in the mean than Cycles' (`--row Normal`); why is not known.",
+    "- The steepest normal map leaves the ball 0.3 % darker in the mean than Cycles' (`--row Normal`), the same on a coat 1.6 %, of blue 3.1 % "
+    "(`--row \"Coat Normal\"`); why is not known.",
     "- Balls of rough glass under a lamp: Cycles' light samples give more than the rays that it draws find. A white ball of "
     "roughness 1 under this page's lamp alone is 0.0644 ± 0.0004 by a random walk in f64; Cycles has 0.080 by light samples "
     "and 0.057 by rays alone, Penumbra 0.0628 and 0.0631. In a white world, where it is 1, Cycles has 0.975 and Penumbra "
